@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sunder {
+
+enum class Verb { fracture, check, schema };
+
+/// The command line, as given.
+struct Options {
+  Verb verb = Verb::fracture;
+  std::vector<std::filesystem::path> inputs;   ///< scene, or files to check
+  std::string schema = "scene";
+  std::string wall_scene;                      ///< scene text made from --wall …; empty: none
+  std::vector<std::filesystem::path> outputs;  ///< -o
+  std::filesystem::path report;                ///< --report; empty: none
+  std::vector<std::string> overrides;          ///< --set
+  std::optional<std::uint64_t> seed;
+  int threads = 0;                             ///< 0: as many as the machine has
+  bool json = false, quiet = false, allow_outside = false;
+  bool verbose = false;
+};
+
+/// Parses the command line. Throws Error{usage} with "did you mean"; prints help or version and
+/// returns nothing when that was asked for.
+std::optional<Options> parse_options(int argc, char** argv);
+
+}  // namespace sunder

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdio>
+
+#include "cli/progress.hpp"
+#include "cli/run.hpp"
+#include "cli/stopwatch.hpp"
+#include "fracture/measure.hpp"
+#include "io/import.hpp"
+#include "io/output.hpp"
+#include "io/report.hpp"
+
+namespace sunder {
+namespace {
+
+SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall) {
+  SoupWall soup;
+  soup.chunk_count = static_cast<std::uint32_t>(wall.chunks.size());
+  soup.has_chunks = asset.has_chunks;
+  soup.bonds = wall.bonds;
+  soup.volume_expected = wall.volume_expected;
+  soup.chunk = [&wall, &asset](std::uint32_t c) {
+    const ImportedChunk& chunk = wall.chunks[c];
+    return SoupChunk{chunk.positions, chunk.triangles,
+                     asset.has_materials ? chunk.inner : std::vector<std::uint8_t>{}};
+  };
+  return soup;
+}
+
+void print(const std::filesystem::path& path, const Soundness& s) {
+  const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("%s: %s\n", path.c_str(), s.is_sound() ? "sound" : "NOT SOUND");
+  std::printf("  %llu chunks, %llu triangles, %llu bonds, volume %.9g m³", count(s.chunks),
+              count(s.triangles), count(s.bonds), s.volume);
+  if (!std::isnan(s.volume_expected)) std::printf(" (off by %.1e)", s.volume_error());
+  std::printf("\n");
+  const std::pair<const char*, std::uint64_t> faults[] = {
+      {"chunks are open", s.open_chunks},
+      {"chunks are not manifold", s.nonmanifold_chunks},
+      {"chunks are inside out", s.inverted_chunks},
+      {"pairs of chunks overlap", s.overlapping_pairs},
+      {"crack triangles have no partner", s.unmatched_faces},
+      {"slivers", s.slivers}};
+  for (const auto& [what, number] : faults)
+    if (number > 0) std::printf("  %llu %s\n", count(number), what);
+}
+
+}  // namespace
+
+int run_check(const Options& options) {
+  int exit_code = kExitOk;
+  for (const auto& path : options.inputs) {
+    Stopwatch watch;
+    const ImportedAsset asset = import_asset(path);
+    watch.lap("read");
+    std::vector<SoupWall> soups;
+    for (const ImportedWall& wall : asset.walls) soups.push_back(soup_of(asset, wall));
+    ProgressBar bar("measuring", !options.quiet);
+    Report report{SUNDER_VERSION, 0, measure(soups, [&](double done) { bar.update(done); }),
+                  0, {}, {}};
+    watch.lap("measure");
+    report.times = watch.steps();
+    if (!report.soundness.is_sound()) exit_code = kExitCheckFailed;
+    if (options.json)
+      std::fputs(report_json(report).c_str(), stdout);
+    else if (!options.quiet)
+      print(path, report.soundness);
+    if (!options.report.empty()) write_file(options.report, report_json(report));
+  }
+  return exit_code;
+}
+
+}  // namespace sunder

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fracture/measure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "meshing/random.hpp"
+#include "meshing/triangulate.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr double kVolumeTolerance = 1e-6;  // float32 positions round to 6e-8 of the wall
+constexpr double kThinnest = 1.0 / 50;
+
+// Numbers points by their bits; open addressing, so that a million points cost no allocations.
+class PointTable {
+ public:
+  std::uint32_t id(const float* p) {
+    if (2 * (points_.size() + 1) > slots_.size()) grow();
+    const std::array<float, 3> key{p[0] + 0.f, p[1] + 0.f, p[2] + 0.f};  // -0 becomes 0
+    std::uint32_t& slot = find(key);
+    if (slot == kEmpty) {
+      slot = static_cast<std::uint32_t>(points_.size());
+      points_.push_back(key);
+    }
+    return slot;
+  }
+
+ private:
+  static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
+
+  std::uint32_t& find(const std::array<float, 3>& key) {
+    const auto bits = [&](int i) { return std::uint64_t{std::bit_cast<std::uint32_t>(key[i])}; };
+    std::size_t at = mix_bits(mix_bits(bits(0) << 32 | bits(1)) ^ bits(2));
+    for (;; ++at) {
+      std::uint32_t& slot = slots_[at & (slots_.size() - 1)];
+      if (slot == kEmpty || points_[slot] == key) return slot;
+    }
+  }
+
+  void grow() {
+    slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), kEmpty);
+    for (std::uint32_t i = 0; i < points_.size(); ++i) find(points_[i]) = i;
+  }
+
+  std::vector<std::array<float, 3>> points_;
+  std::vector<std::uint32_t> slots_;
+};
+
+struct CrackTriangle {
+  std::array<std::uint32_t, 3> points;  // ascending
+  bool even;                            // orientation of the ascending order
+  std::uint32_t chunk;
+};
+
+struct FrontTriangle {
+  std::array<Vec2, 3> at;  // counter-clockwise
+  std::uint32_t chunk;
+};
+
+// Measures one wall into a Soundness.
+class WallMeasure {
+ public:
+  WallMeasure(const SoupWall& wall, Soundness& result) : wall_(wall), result_(result) {}
+
+  void run(const std::function<void(double)>& progress) {
+    for (std::uint32_t c = 0; c < wall_.chunk_count; ++c) {
+      const SoupChunk chunk = wall_.chunk(c);
+      if (c == 0) choose_front(chunk);
+      measure_chunk(c, chunk);
+      if (c % 4096 == 0) progress(0.8 * c / wall_.chunk_count);
+    }
+    match_cracks();
+    progress(0.9);
+    if (wall_.has_chunks) find_overlaps();
+    result_.chunks += wall_.chunk_count;
+    result_.bonds += wall_.bonds;
+  }
+
+ private:
+  static Vec3 point(const SoupChunk& chunk, std::uint32_t v) {
+    const float* p = chunk.positions.data() + std::size_t{3} * v;
+    return {p[0], p[1], p[2]};
+  }
+
+  static bool is_outer(const SoupChunk& chunk, std::size_t t) {
+    return chunk.inner.empty() || !chunk.inner[t];
+  }
+
+  // The wall's normal is that of the largest outer triangle of its first chunk.
+  void choose_front(const SoupChunk& chunk) {
+    double largest = 0;
+    for (std::size_t t = 0; 3 * t < chunk.triangles.size(); ++t) {
+      if (!is_outer(chunk, t)) continue;
+      const Vec3 n = twice_area(chunk, t);
+      if (length(n) <= largest) continue;
+      largest = length(n);
+      normal_ = (1 / largest) * n;
+    }
+    if (std::abs(normal_.z) > 1 - 1e-6) {
+      normal_.z > 0 ? (right_ = {1, 0, 0}, up_ = {0, 1, 0}) : (right_ = {0, 1, 0}, up_ = {1, 0, 0});
+      return;
+    }
+    right_ = cross(Vec3{0, 0, 1}, normal_);
+    right_ = (1 / length(right_)) * right_;
+    up_ = cross(normal_, right_);
+  }
+
+  static Vec3 twice_area(const SoupChunk& chunk, std::size_t t) {
+    const Vec3 a = point(chunk, chunk.triangles[3 * t]);
+    return cross(point(chunk, chunk.triangles[3 * t + 1]) - a,
+                 point(chunk, chunk.triangles[3 * t + 2]) - a);
+  }
+
+  void measure_chunk(std::uint32_t c, const SoupChunk& chunk) {
+    ids_.resize(chunk.positions.size() / 3);
+    for (std::size_t v = 0; v < ids_.size(); ++v) ids_[v] = points_.id(chunk.positions.data() + 3 * v);
+    const std::size_t count = chunk.triangles.size() / 3;
+    result_.triangles += count;
+    edges_.clear();
+    double volume = 0;
+    const Vec3 base = count > 0 ? point(chunk, chunk.triangles[0]) : Vec3{};
+    for (std::size_t t = 0; t < count; ++t) {
+      const std::uint32_t* v = chunk.triangles.data() + 3 * t;
+      const std::array<std::uint32_t, 3> id{ids_[v[0]], ids_[v[1]], ids_[v[2]]};
+      for (int i = 0; i < 3; ++i)
+        edges_.push_back(std::uint64_t{id[i]} << 32 | id[(i + 1) % 3]);
+      volume += dot(point(chunk, v[0]) - base,
+                    cross(point(chunk, v[1]) - base, point(chunk, v[2]) - base)) / 6;
+      add_to_hash(chunk, v);
+      if (!is_outer(chunk, t)) add_crack(id, c);
+    }
+    count_edges(volume);
+    result_.volume += volume;
+    result_.min_chunk_volume = std::min(result_.min_chunk_volume, volume);
+    if (wall_.has_chunks) add_front(c, chunk);
+  }
+
+  void add_to_hash(const SoupChunk& chunk, const std::uint32_t* triangle) {
+    for (int i = 0; i < 3; ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        const float value = chunk.positions[std::size_t{3} * triangle[i] + axis] + 0.f;
+        result_.hash = mix_bits(result_.hash ^ std::bit_cast<std::uint32_t>(value)) + 1;
+      }
+  }
+
+  void add_crack(std::array<std::uint32_t, 3> id, std::uint32_t chunk) {
+    const auto least = std::ranges::min_element(id) - id.begin();
+    std::ranges::rotate(id, id.begin() + least);
+    const bool even = id[1] < id[2];
+    if (!even) std::swap(id[1], id[2]);
+    cracks_.push_back({id, even, chunk});
+  }
+
+  void count_edges(double volume) {
+    std::ranges::sort(edges_);
+    bool open = false, repeated = false;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const std::uint64_t reverse = edges_[i] << 32 | edges_[i] >> 32;
+      repeated |= i > 0 && edges_[i] == edges_[i - 1];
+      const auto [first, last] = std::ranges::equal_range(edges_, reverse);
+      if (wall_.has_chunks) {
+        open |= first == last;
+      } else {
+        const auto [own, own_end] = std::ranges::equal_range(edges_, edges_[i]);
+        open |= last - first != own_end - own;
+      }
+    }
+    result_.open_chunks += open;
+    result_.nonmanifold_chunks += wall_.has_chunks && repeated;
+    result_.inverted_chunks += !open && !(volume > 0);
+  }
+
+  void match_cracks() {
+    std::ranges::sort(cracks_, {}, [](const CrackTriangle& t) {
+      return std::tuple(t.points, t.even, t.chunk);
+    });
+    for (std::size_t i = 0; i < cracks_.size();) {
+      std::size_t end = i;
+      while (end < cracks_.size() && cracks_[end].points == cracks_[i].points) ++end;
+      const bool matched = end - i == 2 && cracks_[i].even != cracks_[i + 1].even &&
+                           cracks_[i].chunk != cracks_[i + 1].chunk;
+      if (!matched) result_.unmatched_faces += end - i;
+      i = end;
+    }
+  }
+
+  void add_front(std::uint32_t c, const SoupChunk& chunk) {
+    Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+    double area = 0;
+    for (std::size_t t = 0; 3 * t < chunk.triangles.size(); ++t) {
+      if (!is_outer(chunk, t)) continue;
+      const Vec3 n = twice_area(chunk, t);
+      if (!(dot(n, normal_) > 0.99 * length(n))) continue;
+      FrontTriangle front{{}, c};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 p = point(chunk, chunk.triangles[3 * t + i]);
+        front.at[i] = {dot(p, right_), dot(p, up_)};
+        low = {std::min(low.x, front.at[i].x), std::min(low.y, front.at[i].y)};
+        high = {std::max(high.x, front.at[i].x), std::max(high.y, front.at[i].y)};
+      }
+      if (orientation(front.at[0], front.at[1], front.at[2]) <= 0) continue;
+      fronts_.push_back(front);
+      area += length(n) / 2;
+    }
+    const double extent = dot(high - low, high - low);
+    result_.slivers += area > 0 && area < kThinnest * extent;
+    front_area_ += area;
+  }
+
+  static bool separates(const FrontTriangle& a, const FrontTriangle& b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      bool apart = true;
+      for (const Vec2& p : b.at) apart &= orientation(a.at[i], a.at[(i + 1) % 3], p) <= 0;
+      if (apart) return true;
+    }
+    return false;
+  }
+
+  struct Entry {
+    std::int64_t bucket;
+    std::uint32_t triangle;
+    friend auto operator<=>(const Entry&, const Entry&) = default;
+  };
+
+  // Pairs of front triangles that share a bucket of a grid, then separating edges, exactly.
+  void find_overlaps() {
+    if (fronts_.empty()) return;
+    const double size = 2 * std::sqrt(front_area_ / static_cast<double>(fronts_.size()));
+    std::vector<Entry> entries;
+    for (std::uint32_t t = 0; t < fronts_.size(); ++t) {
+      const auto& at = fronts_[t].at;
+      const auto cell = [&](double v) { return static_cast<std::int64_t>(std::floor(v / size)); };
+      const auto [x0, x1] = std::minmax({at[0].x, at[1].x, at[2].x});
+      const auto [y0, y1] = std::minmax({at[0].y, at[1].y, at[2].y});
+      for (std::int64_t x = cell(x0); x <= cell(x1); ++x)
+        for (std::int64_t y = cell(y0); y <= cell(y1); ++y)
+          entries.push_back({x * 0x100000001 + y, t});
+    }
+    std::ranges::sort(entries);
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      for (std::size_t j = i + 1; j < entries.size() && entries[j].bucket == entries[i].bucket; ++j) {
+        const FrontTriangle& a = fronts_[entries[i].triangle];
+        const FrontTriangle& b = fronts_[entries[j].triangle];
+        if (a.chunk != b.chunk && !separates(a, b) && !separates(b, a))
+          pairs.push_back({std::min(a.chunk, b.chunk), std::max(a.chunk, b.chunk)});
+      }
+    std::ranges::sort(pairs);
+    result_.overlapping_pairs +=
+        static_cast<std::uint64_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+  }
+
+  const SoupWall& wall_;
+  Soundness& result_;
+  PointTable points_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<std::uint64_t> edges_;
+  std::vector<CrackTriangle> cracks_;
+  std::vector<FrontTriangle> fronts_;
+  Vec3 normal_{0, 0, 1}, right_{1, 0, 0}, up_{0, 1, 0};
+  double front_area_ = 0;
+};
+
+}  // namespace
+
+double Soundness::volume_error() const {
+  return std::abs(volume - volume_expected) / volume_expected;
+}
+
+bool Soundness::is_sound() const {
+  const bool volume_ok = std::isnan(volume_expected) || volume_error() <= kVolumeTolerance;
+  return chunks > 0 && open_chunks == 0 && nonmanifold_chunks == 0 && inverted_chunks == 0 &&
+         unmatched_faces == 0 && overlapping_pairs == 0 && volume_ok;
+}
+
+Soundness measure(const std::vector<SoupWall>& walls, const Progress& progress) {
+  Soundness result;
+  double expected = 0;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    WallMeasure(walls[w], result).run([&](double done) {
+      if (progress) progress((static_cast<double>(w) + done) / static_cast<double>(walls.size()));
+    });
+    expected += walls[w].volume_expected;
+  }
+  result.volume_expected = expected;
+  if (progress) progress(1);
+  return result;
+}
+
+SoupWall soup_of(const WallAsset& asset, const RenderMeshes& meshes) {
+  SoupWall wall;
+  wall.chunk_count = meshes.chunk_count();
+  wall.bonds = asset.bonds.size();
+  wall.volume_expected = asset.volume_expected;
+  wall.chunk = [&meshes](std::uint32_t c) {
+    SoupChunk chunk;
+    const std::size_t begin = meshes.vertex_begin[c], end = meshes.vertex_begin[c + 1];
+    chunk.positions.assign(meshes.positions.data() + 3 * begin, meshes.positions.data() + 3 * end);
+    for (const bool inner : {false, true}) {
+      const std::uint32_t id = inner ? meshes.inner[c] : meshes.outer[c];
+      if (id == RenderMeshes::kNoList) continue;
+      const auto first = meshes.indices.begin() + meshes.lists[id].begin;
+      chunk.triangles.insert(chunk.triangles.end(), first, first + meshes.lists[id].count);
+      chunk.inner.insert(chunk.inner.end(), meshes.lists[id].count / 3, inner);
+    }
+    return chunk;
+  };
+  return wall;
+}
+
+}  // namespace sunder

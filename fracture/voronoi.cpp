@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Propose every cell fast, certify it exactly, repair the few that fail, then share the vertices.
+#include "fracture/voronoi.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "fracture/voronoi_detail.hpp"
+
+namespace sunder {
+namespace {
+
+// Of the grid's cells; beyond it too many neighbours lie outside the kernels' window.
+constexpr double kLargestAspect = 1.7;
+
+struct Edge {
+  std::uint32_t cell;
+  std::int32_t neighbour;
+};
+
+// What one thread found.
+struct Findings {
+  std::vector<Edge> ties;
+  std::vector<std::uint32_t> wrong;
+};
+
+bool suits_kernels(const Sites& sites) {
+  const double aspect = static_cast<double>(sites.cell_width) / sites.cell_height;
+  return sites.columns >= kSmallestGrid && sites.rows >= kSmallestGrid &&
+         aspect <= kLargestAspect && aspect >= 1 / kLargestAspect;
+}
+
+// Grid position whose mirror image stands at i, and the mirrored coordinate. The image is moved
+// outwards by one unit: a site on the box's side does not meet its own image.
+struct Mirror {
+  std::int64_t index, twice_axis;
+  bool mirrored;
+};
+Mirror mirror(std::int64_t i, std::int64_t count, std::int64_t extent) {
+  if (i < 0) return {-1 - i, -1, true};
+  if (i >= count) return {2 * count - 1 - i, 2 * extent + 1, true};
+  return {i, 0, false};
+}
+
+struct PaddedSites {
+  std::vector<std::int32_t> x, y;
+  PaddedGrid grid;
+};
+
+PaddedSites pad(const Sites& sites) {
+  PaddedSites padded;
+  PaddedGrid& grid = padded.grid;
+  grid.columns = sites.columns, grid.rows = sites.rows;
+  grid.stride = sites.columns + kPadLow + kPadHigh;
+  const std::int64_t size = std::int64_t{grid.stride} * (grid.rows + kPadLow + kPadHigh);
+  padded.x.resize(static_cast<std::size_t>(size));
+  padded.y.resize(static_cast<std::size_t>(size));
+  std::size_t at = 0;
+  for (std::int64_t j = -kPadLow; j < grid.rows + kPadHigh; ++j) {
+    const Mirror row = mirror(j, grid.rows, sites.lattice.height);
+    const Site* source = sites.points.data() + row.index * grid.columns;
+    for (std::int64_t i = -kPadLow; i < grid.columns + kPadHigh; ++i, ++at) {
+      const Mirror column = mirror(i, grid.columns, sites.lattice.width);
+      const Site site = source[column.index];
+      padded.x[at] = column.mirrored ? static_cast<std::int32_t>(column.twice_axis - site.x) : site.x;
+      padded.y[at] = row.mirrored ? static_cast<std::int32_t>(row.twice_axis - site.y) : site.y;
+    }
+  }
+  grid.x = padded.x.data(), grid.y = padded.y.data();
+  return padded;
+}
+
+// Turns mirrored neighbours into the box's sides: once a side, and none across a box corner.
+void unfold(Stars& stars, const Sites& sites, std::int32_t i, std::int32_t j) {
+  const std::int64_t cell = j * std::int64_t{sites.columns} + i;
+  const StarWord word = stars.words[static_cast<std::size_t>(cell)];
+  Star star;
+  bool mirrored = false;
+  for (int k = 0; k < star_size(word); ++k) {
+    const std::int32_t x = i + columns_away(star_code(word, k));
+    const std::int32_t y = j + rows_away(star_code(word, k));
+    const bool beside = x < 0 || x >= sites.columns, above = y < 0 || y >= sites.rows;
+    mirrored |= beside || above;
+    if (beside && above) continue;
+    const std::int32_t side = beside ? (x < 0 ? 3 : 1) : (y < 0 ? 0 : 2);
+    const std::int32_t neighbour = beside || above ? ~side : y * sites.columns + x;
+    if (star.empty() || star.back() != neighbour) star.push_back(neighbour);
+  }
+  if (star.size() > 1 && star.front() == star.back()) star.pop_back();
+  if (mirrored) stars.assign(static_cast<std::uint32_t>(cell), star);
+}
+
+void unfold_border(Stars& stars, const Sites& sites) {
+  const std::int32_t columns = sites.columns, rows = sites.rows;
+  for (std::int32_t j = 0; j < rows; ++j) {
+    const bool whole_row = j < kPadLow || j >= rows - kPadLow;
+    for (std::int32_t i = 0; i < columns; ++i) {
+      if (!whole_row && i == kPadLow) i = columns - kPadLow;
+      unfold(stars, sites, i, j);
+    }
+  }
+}
+
+void propose(Stars& stars, const Sites& sites, const Buckets& buckets, bool avx2, int threads) {
+  if (suits_kernels(sites)) {
+    const PaddedSites padded = pad(sites);
+    in_bands(threads, sites.rows, [&](int, std::int64_t begin, std::int64_t end) {
+      std::vector<StarWord> scratch(static_cast<std::size_t>(kScratchRows) *
+                                    static_cast<std::size_t>(padded.grid.stride));
+      (avx2 ? propose_avx2 : propose_portable)(
+          padded.grid, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end),
+          stars.words.data(), scratch.data());
+    });
+    unfold_border(stars, sites);
+  }
+  for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell)
+    if (stars.words[cell] == 0) stars.assign(cell, clip_cell_fast(sites, buckets, cell));
+}
+
+Findings certify_all(const Stars& stars, const Sites& sites, int threads) {
+  std::vector<Findings> found(static_cast<std::size_t>(std::max(1, threads)));
+  in_bands(threads, stars.cell_count(), [&](int band, std::int64_t begin, std::int64_t end) {
+    Findings& mine = found[static_cast<std::size_t>(band)];
+    Star ties;
+    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+      const Verdict verdict = certify(sites, stars, cell, stars.is_list(cell), ties);
+      if (verdict == Verdict::good) continue;
+      if (verdict == Verdict::wrong) mine.wrong.push_back(cell);
+      else
+        for (const std::int32_t neighbour : ties) mine.ties.push_back({cell, neighbour});
+      ties.clear();
+    }
+  });
+  for (std::size_t band = 1; band < found.size(); ++band) {
+    found[0].ties.insert(found[0].ties.end(), found[band].ties.begin(), found[band].ties.end());
+    found[0].wrong.insert(found[0].wrong.end(), found[band].wrong.begin(), found[band].wrong.end());
+  }
+  return std::move(found[0]);
+}
+
+// Edges of length 0 leave both cells: what remains is one vertex where more than three cells meet.
+void drop_ties(Stars& stars, std::span<const Edge> ties) {
+  for (const auto [cell, neighbour] : ties) {
+    stars.remove(cell, neighbour);
+    if (neighbour >= 0)
+      stars.remove(static_cast<std::uint32_t>(neighbour), static_cast<std::int32_t>(cell));
+  }
+}
+
+// Replaces wrong cells by exact ones, then whatever contradicts those, until nothing does.
+class Repair {
+ public:
+  Repair(Stars& stars, const Sites& sites, const Buckets& buckets)
+      : stars_(stars), sites_(sites), buckets_(buckets) {}
+
+  void run(std::vector<std::uint32_t> wrong) {
+    if (wrong.empty()) return;
+    if (exact_.empty()) exact_.assign(stars_.cell_count(), false);
+    while (!wrong.empty()) {
+      suspects_.clear();
+      for (const std::uint32_t cell : wrong) make_exact(cell);
+      std::ranges::sort(suspects_);
+      suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
+      wrong.clear();
+      std::ranges::copy_if(suspects_, std::back_inserter(wrong),
+                           [&](std::uint32_t cell) { return contradicts(cell); });
+    }
+  }
+
+  bool all_exact(std::span<const std::uint32_t> cells) const {
+    return !exact_.empty() &&
+           std::ranges::all_of(cells, [&](std::uint32_t cell) { return exact_[cell]; });
+  }
+  std::uint64_t exact_count() const {
+    return static_cast<std::uint64_t>(std::ranges::count(exact_, true));
+  }
+
+ private:
+  void suspect_neighbours(std::uint32_t cell) {
+    std::int32_t buffer[8];
+    for (const std::int32_t neighbour : stars_.star(cell, buffer))
+      if (neighbour >= 0) suspects_.push_back(static_cast<std::uint32_t>(neighbour));
+  }
+
+  void make_exact(std::uint32_t cell) {
+    if (exact_[cell]) return;
+    suspect_neighbours(cell);
+    stars_.assign(cell, clip_cell_exactly(sites_, buckets_, cell));
+    exact_[cell] = true;
+    suspect_neighbours(cell);
+  }
+
+  bool lists(std::uint32_t cell, std::uint32_t other) const {
+    std::int32_t buffer[8];
+    return std::ranges::count(stars_.star(cell, buffer), static_cast<std::int32_t>(other)) == 1;
+  }
+
+  // A cell that is not exact yet and does not hold against itself and its neighbours.
+  bool contradicts(std::uint32_t cell) const {
+    if (exact_[cell]) return false;
+    Star ties;
+    if (certify(sites_, stars_, cell, true, ties) != Verdict::good) return true;
+    std::int32_t buffer[8];
+    for (const std::int32_t neighbour : stars_.star(cell, buffer))
+      if (neighbour >= 0 && !lists(static_cast<std::uint32_t>(neighbour), cell)) return true;
+    return false;
+  }
+
+  Stars& stars_;
+  const Sites& sites_;
+  const Buckets& buckets_;
+  std::vector<bool> exact_;
+  std::vector<std::uint32_t> suspects_;
+};
+
+}  // namespace
+
+Stars::Stars(const Sites& sites)
+    : columns(std::max(1, sites.columns)), words(sites.points.size(), 0) {}
+
+std::span<const std::int32_t> Stars::star(std::uint32_t cell, std::int32_t (&buffer)[8]) const {
+  const StarWord word = words[cell];
+  if (is_list(cell)) return {pool.data() + (word & 0xFFFFFFFFu), (word >> 32) & 0xFFFFFFu};
+  const int count = star_size(word);
+  for (int k = 0; k < count; ++k)
+    buffer[k] = static_cast<std::int32_t>(cell) + rows_away(star_code(word, k)) * columns +
+                columns_away(star_code(word, k));
+  return {buffer, static_cast<std::size_t>(count)};
+}
+
+std::uint32_t Stars::size(std::uint32_t cell) const {
+  return is_list(cell) ? static_cast<std::uint32_t>(words[cell] >> 32 & 0xFFFFFFu)
+                       : static_cast<std::uint32_t>(star_size(words[cell]));
+}
+
+void Stars::assign(std::uint32_t cell, std::span<const std::int32_t> star) {
+  words[cell] = StarWord{0xFF} << 56 | StarWord{star.size()} << 32 | StarWord{pool.size()};
+  const auto first = std::ranges::min_element(star);
+  pool.insert(pool.end(), first, star.end());
+  pool.insert(pool.end(), star.begin(), first);
+}
+
+void Stars::remove(std::uint32_t cell, std::int32_t neighbour) {
+  std::int32_t buffer[8];
+  const std::span<const std::int32_t> now = star(cell, buffer);
+  const auto place = std::ranges::find(now, neighbour);
+  if (place == now.end()) return;
+  const auto k = place - now.begin();
+  if (!is_list(cell)) {
+    const StarWord below = (StarWord{1} << (8 * k)) - 1;
+    const StarWord shorter = (words[cell] & below) | ((words[cell] >> 8) & ~below);
+    const int size = star_size(shorter);
+    words[cell] = star_turned(shorter, size, star_first(shorter, size));
+    return;
+  }
+  Star shorter(now.begin(), now.end());
+  shorter.erase(shorter.begin() + k);
+  assign(cell, shorter);
+}
+
+Pattern voronoi(const Sites& sites, VoronoiParams params, VoronoiStats* stats) {
+  assert(!sites.points.empty());
+  const bool avx2 = params.kernel != VoronoiKernel::portable && has_avx2();
+  const int threads = std::max(1, params.threads);
+  const Buckets buckets(sites);
+  Stars stars(sites);
+  propose(stars, sites, buckets, avx2, threads);
+  Findings found = certify_all(stars, sites, threads);
+  drop_ties(stars, found.ties);
+  Repair repair(stars, sites, buckets);
+  repair.run(std::move(found.wrong));
+  Shared shared = share_vertices(sites, stars, threads);
+  while (!shared.wrong.empty()) {
+    assert(!repair.all_exact(shared.wrong));
+    repair.run(std::move(shared.wrong));
+    shared = share_vertices(sites, stars, threads);
+  }
+  if (stats != nullptr) {
+    const std::uint64_t exact = repair.exact_count();
+    *stats = {stars.cell_count() - exact, exact, shared.merged, avx2 && suits_kernels(sites)};
+  }
+  return std::move(shared.pattern);
+}
+
+}  // namespace sunder

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vertices without hashing: the smallest cell that meets at a vertex owns it and writes it into the
+// other cells, which it finds through the edges they share.
+#include <algorithm>
+
+#include "fracture/voronoi_detail.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr std::uint32_t kNone = ~0u;
+constexpr std::size_t kLargestFan = 1u << 22;
+
+// The cells around a vertex, each with its corner there; on the border also the sides at both ends.
+struct Fan {
+  struct Slot {
+    std::uint32_t cell, corner;
+  };
+  std::vector<Slot> slots;
+  std::int32_t entry = 0, exit = 0;  // ~side, or 0 inside the wall
+};
+
+// Finds and places the vertices that the cells of one band own.
+class Band {
+ public:
+  Band(const Sites& sites, const Stars& stars, Pattern& pattern)
+      : sites_(sites), stars_(stars), pattern_(pattern) {}
+
+  void share(std::uint32_t begin, std::uint32_t end) {
+    vertices.reserve(2 * static_cast<std::size_t>(end - begin) + 8);
+    for (std::uint32_t cell = begin; cell < end; ++cell) {
+      if (stars_.is_list(cell)) share_any(cell);
+      else share_word(cell);
+    }
+  }
+
+  std::vector<Vec2> vertices;
+  std::vector<std::uint32_t> wrong;
+  std::uint64_t merged = 0, written = 0, box_corners = 0, border_edges = 0;
+
+ private:
+  std::uint32_t begin_of(std::uint32_t cell) const { return pattern_.cell_begin[cell]; }
+  std::uint32_t next(std::uint32_t cell, std::uint32_t corner) const {
+    return corner + 1 == pattern_.cell_begin[cell + 1] ? begin_of(cell) : corner + 1;
+  }
+  std::uint32_t before(std::uint32_t cell, std::uint32_t corner) const {
+    return (corner == begin_of(cell) ? pattern_.cell_begin[cell + 1] : corner) - 1;
+  }
+
+  Vec2 relative(std::uint32_t cell, std::int64_t other) const {
+    const Site a = sites_.points[cell], b = sites_.points[static_cast<std::size_t>(other)];
+    return {static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y)};
+  }
+
+  void add(std::uint32_t corner) {
+    pattern_.corners[corner] = static_cast<std::uint32_t>(vertices.size());
+    ++written;
+  }
+
+  // A cell with only cells around it: the usual case, three cells at a vertex.
+  void share_word(std::uint32_t cell) {
+    const StarWord word = stars_.words[cell];
+    const int size = star_size(word);
+    const std::uint32_t begin = begin_of(cell);
+    StarCode a = star_code(word, size - 1);
+    for (int k = 0; k < size; ++k) {
+      const StarCode b = star_code(word, k);
+      if (a > kHere && b > kHere && !share_triple(cell, begin + static_cast<std::uint32_t>(k), a, b))
+        share_slowly(cell, begin + static_cast<std::uint32_t>(k));
+      a = b;
+    }
+  }
+
+  std::uint32_t neighbour(std::uint32_t cell, StarCode code) const {
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(cell) +
+                                      rows_away(code) * std::int64_t{stars_.columns} +
+                                      columns_away(code));
+  }
+
+  bool share_triple(std::uint32_t cell, std::uint32_t corner, StarCode a, StarCode b) {
+    const std::uint32_t cell_a = neighbour(cell, a), cell_b = neighbour(cell, b);
+    const StarWord word_a = stars_.words[cell_a], word_b = stars_.words[cell_b];
+    if ((word_a | word_b) >> 56 == 0xFF && (stars_.is_list(cell_a) || stars_.is_list(cell_b)))
+      return false;
+    const int in_a = star_find(word_a, reverse(a)), in_b = star_find(word_b, seen_from(b, a));
+    if (in_a == 8 || in_b == 8 || star_before(word_a, in_a) != seen_from(a, b) ||
+        star_before(word_b, in_b) != reverse(b))
+      return false;
+    add(corner);
+    add(begin_of(cell_a) + static_cast<std::uint32_t>(in_a));
+    add(begin_of(cell_b) + static_cast<std::uint32_t>(in_b));
+    const Vec2 centre = circle_centre(relative(cell, cell_a), relative(cell, cell_b));
+    const Site site = sites_.points[cell];
+    vertices.push_back(sites_.lattice.to_metres(Vec2{site.x + centre.x, site.y + centre.y}));
+    return true;
+  }
+
+  void share_any(std::uint32_t cell) {
+    for (std::uint32_t corner = begin_of(cell); corner < pattern_.cell_begin[cell + 1]; ++corner) {
+      border_edges += pattern_.across[corner].is_border();
+      const Across a = pattern_.across[before(cell, corner)], b = pattern_.across[corner];
+      if ((a.is_border() || a.cell() > cell) && (b.is_border() || b.cell() > cell))
+        share_slowly(cell, corner);
+    }
+  }
+
+  void share_slowly(std::uint32_t cell, std::uint32_t corner) {
+    if (!collect(cell, corner)) return reject();
+    const auto smaller = [](const Fan::Slot& p, const Fan::Slot& q) { return p.cell < q.cell; };
+    std::ranges::sort(fan_.slots, smaller);
+    if (fan_.slots[0].cell != cell) return;
+    std::int32_t generators[3];
+    if (!find_generators(generators)) return reject();
+    for (const Fan::Slot& slot : fan_.slots) add(slot.corner);
+    vertices.push_back(place_of(sites_, generators));
+  }
+
+  // Every cell at the fan may be at fault.
+  void reject() {
+    for (const Fan::Slot& slot : fan_.slots) wrong.push_back(slot.cell);
+  }
+
+  // The corner of `cell` where its edge to `other` starts, kNone if there is no such edge.
+  std::uint32_t find(std::uint32_t cell, std::uint32_t other) const {
+    const auto first = pattern_.across.begin() + begin_of(cell);
+    const auto last = pattern_.across.begin() + pattern_.cell_begin[cell + 1];
+    const auto place = std::find(first, last, Across::cell(other));
+    return place == last ? kNone : static_cast<std::uint32_t>(place - pattern_.across.begin());
+  }
+
+  // Walks once around a vertex; on the border from end to end. False when the walk does not close.
+  bool collect(std::uint32_t cell, std::uint32_t corner) {
+    fan_.slots.assign(1, {cell, corner});
+    fan_.entry = fan_.exit = 0;
+    Across way = pattern_.across[before(cell, corner)];
+    for (std::uint32_t at = cell; !way.is_border();) {
+      const std::uint32_t found = find(way.cell(), at);
+      if (way.cell() == cell && found == corner) return true;
+      fan_.slots.push_back({way.cell(), found});
+      if (found == kNone || fan_.slots.size() > kLargestFan) return false;
+      at = way.cell();
+      way = pattern_.across[before(at, found)];
+    }
+    fan_.entry = ~static_cast<std::int32_t>(way.border());
+    way = pattern_.across[corner];
+    for (std::uint32_t at = cell; !way.is_border();) {
+      const std::uint32_t edge = find(way.cell(), at);
+      fan_.slots.push_back({way.cell(), edge});
+      if (edge == kNone || fan_.slots.size() > kLargestFan) return false;
+      at = way.cell();
+      fan_.slots.back().corner = next(at, edge);
+      way = pattern_.across[fan_.slots.back().corner];
+    }
+    fan_.exit = ~static_cast<std::int32_t>(way.border());
+    return true;
+  }
+
+  // What defines the fan's vertex; false unless all of its cells meet there exactly.
+  bool find_generators(std::int32_t (&generators)[3]) {
+    const bool inside = fan_.entry == 0, box_corner = !inside && fan_.entry != fan_.exit;
+    const std::size_t needed = inside ? 3 : box_corner ? 1 : 2;
+    if (fan_.slots.size() < needed) return false;
+    if (box_corner && ((~fan_.entry + 1) & 3) != ~fan_.exit) return false;
+    for (std::size_t k = 0; k < needed; ++k)
+      generators[k] = static_cast<std::int32_t>(fan_.slots[k].cell);
+    if (!inside) generators[2] = fan_.exit;
+    if (box_corner) generators[1] = fan_.entry;
+    for (std::size_t k = 1; k < fan_.slots.size(); ++k)
+      if (fan_.slots[k].cell == fan_.slots[k - 1].cell ||
+          (k >= needed && !meets(sites_, generators, fan_.slots[k].cell)))
+        return false;
+    merged += fan_.slots.size() > needed;
+    box_corners += box_corner;
+    return true;
+  }
+
+  const Sites& sites_;
+  const Stars& stars_;
+  Pattern& pattern_;
+  Fan fan_;
+};
+
+void write_stars(Pattern& pattern, const Stars& stars, int threads) {
+  const std::uint32_t count = stars.cell_count();
+  pattern.cell_begin.resize(count + 1);
+  std::uint32_t corner = 0;
+  for (std::uint32_t cell = 0; cell < count; ++cell) {
+    pattern.cell_begin[cell] = corner;
+    corner += stars.size(cell);
+  }
+  pattern.cell_begin[count] = corner;
+  pattern.corners.resize(corner);
+  pattern.across.resize(corner);
+  in_bands(threads, count, [&](int, std::int64_t begin, std::int64_t end) {
+    std::int32_t buffer[8];
+    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+      Across* out = pattern.across.data() + pattern.cell_begin[cell];
+      for (const std::int32_t neighbour : stars.star(cell, buffer))
+        *out++ = neighbour < 0 ? Across::border(static_cast<std::uint32_t>(~neighbour))
+                               : Across::cell(static_cast<std::uint32_t>(neighbour));
+    }
+  });
+}
+
+// Corners hold vertices numbered within the band that owns them: bands follow one another, so a
+// corner's band is known once every corner knows it. Here each band rewrites what it wrote.
+}  // namespace
+
+Shared share_vertices(const Sites& sites, const Stars& stars, int threads) {
+  Shared shared;
+  write_stars(shared.pattern, stars, threads);
+  Band band(sites, stars, shared.pattern);
+  band.share(0, stars.cell_count());
+  const Pattern& pattern = shared.pattern;
+  // Euler's formula: with every corner turning left it also says that each cell and each vertex is
+  // gone around once (sum of the angles), so the cells tile the box once.
+  const std::int64_t corners = static_cast<std::int64_t>(pattern.corners.size());
+  const std::int64_t border = static_cast<std::int64_t>(band.border_edges);
+  const std::int64_t edges = (corners - border) / 2 + border;
+  const bool closes = static_cast<std::int64_t>(band.written) == corners && band.box_corners == 4 &&
+                      static_cast<std::int64_t>(band.vertices.size()) - edges +
+                              static_cast<std::int64_t>(stars.cell_count()) ==
+                          1;
+  shared.wrong = std::move(band.wrong);
+  shared.merged = band.merged;
+  if (!closes && shared.wrong.empty())
+    for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell) shared.wrong.push_back(cell);
+  shared.pattern.vertices = std::move(band.vertices);
+  shared.pattern.all_convex = true;
+  return shared;
+}
+
+}  // namespace sunder

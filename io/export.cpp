@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/export.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/export_files.hpp"
+#include "io/gltf.hpp"
+#include "io/obj.hpp"
+#include "io/svg.hpp"
+#include "meshing/error.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl", ".ply", ".svg"};
+
+std::vector<WallView> views_of(const MeshedAsset& asset) {
+  std::vector<WallView> views;
+  views.reserve(asset.meshes.size());
+  for (std::size_t i = 0; i < asset.meshes.size(); ++i) {
+    views.push_back(view_of(asset.asset.walls[i], asset.meshes[i]));
+  }
+  return views;
+}
+
+void write_pair(std::span<const WallView> walls, const std::filesystem::path& path,
+                const std::string& suffix) {
+  OutputFile file(path), companion(companion_of(path));
+  FileSink sink(file), companion_sink(companion);
+  const std::string name = companion_of(path).filename().string();
+  if (suffix == ".gltf") {
+    write_gltf(walls, name, sink, companion_sink);
+  } else {
+    write_obj(walls, name, sink);
+    write_mtl(walls, companion_sink);
+  }
+  commit_pair(companion, file);
+}
+
+}  // namespace
+
+bool is_export_suffix(const std::string& suffix) {
+  return std::ranges::find(kSuffixes, suffix) != std::end(kSuffixes);
+}
+
+std::string suffix_of(const std::filesystem::path& path) {
+  std::string suffix = path.extension().string();
+  for (char& c : suffix) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return suffix;
+}
+
+std::filesystem::path companion_of(const std::filesystem::path& path) {
+  const std::string suffix = suffix_of(path);
+  std::filesystem::path other = path;
+  if (suffix == ".gltf") return other.replace_extension(".bin");
+  if (suffix == ".obj") return other.replace_extension(".mtl");
+  return {};
+}
+
+void commit_pair(OutputFile& companion, OutputFile& file) {
+  companion.flush();
+  file.flush();
+  companion.commit();
+  try {
+    file.commit();
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(companion.path(), ignored);
+    throw;
+  }
+}
+
+MeshedAsset mesh_asset(const Asset& asset, int threads) {
+  MeshedAsset result{asset, {}};
+  for (const WallAsset& wall : asset.walls) {
+    result.meshes.push_back(render_meshes(wall, threads));
+  }
+  return result;
+}
+
+void export_asset(const MeshedAsset& asset, const std::filesystem::path& path) {
+  const std::string suffix = suffix_of(path);
+  if (suffix == ".svg") return write_file(path, draw_svg(asset.asset));
+  if (suffix != ".glb" && suffix != ".gltf" && suffix != ".obj") {
+    return export_through_assimp(asset, path);
+  }
+  const std::vector<WallView> walls = views_of(asset);
+  try {
+    validate(walls);
+    if (suffix != ".glb") return write_pair(walls, path, suffix);
+    OutputFile file(path);
+    FileSink sink(file);
+    write_glb(walls, sink);
+    file.commit();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.starts_with(path.string())) throw;
+    throw Error(error.code(), path.string() + ": " + message);
+  }
+}
+
+}  // namespace sunder

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fracture/asset.hpp"
+#include "fracture/chunk_mesh.hpp"
+
+namespace sunder {
+
+/// Suffixes export_asset writes: .glb .gltf .obj .stl .ply .svg
+bool is_export_suffix(const std::string& suffix);
+
+/// An asset with the render meshes of its walls, made once for any number of files.
+struct MeshedAsset {
+  const Asset& asset;
+  std::vector<RenderMeshes> meshes;  ///< one per wall
+};
+MeshedAsset mesh_asset(const Asset& asset, int threads = 1);
+
+/// Writes the asset in the format of the path's suffix; whole or not at all (a .gltf with its .bin,
+/// an .obj with its .mtl). GLB, glTF and OBJ are written straight from the meshes by the writers
+/// that are also registered with assimp (export_through_assimp), byte for byte the same; STL and PLY
+/// by assimp; SVG by ourselves. Throws Error{usage} for another suffix, Error{output} on failure.
+/// Same asset, same bytes.
+void export_asset(const MeshedAsset& asset, const std::filesystem::path& path);
+
+/// The same file by way of an aiScene and Assimp::Exporter, for every format but .svg.
+void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path& path);
+
+}  // namespace sunder

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// docs/parameters.md, made of the tables that the scene reader uses.
+#include "io/field_row.hpp"
+#include "io/json_place.hpp"
+#include "io/printable.hpp"
+#include "io/scene.hpp"
+#include "io/scene_keys.hpp"
+
+namespace sunder {
+namespace {
+
+/// `a|b` would end a table's cell.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? "\\|" : std::string(1, c);
+  return escaped;
+}
+
+std::string code(std::string_view text) {
+  return text.empty() ? "" : '`' + cell(text) + '`';
+}
+
+struct DocRow {
+  std::string_view name, type;
+  std::string default_value, range;
+  std::string_view unit, effect;
+};
+
+std::string table(std::span<const DocRow> rows) {
+  std::string text =
+      "| key | type | default | valid | unit | effect |\n|---|---|---|---|---|---|\n";
+  for (const DocRow& row : rows) {
+    text += "| " + code(row.name) + " | " + cell(row.type) + " | " + row.default_value + " | " +
+            row.range + " | " + cell(row.unit) + " | " + cell(row.effect) + " |\n";
+  }
+  return text + '\n';
+}
+
+DocRow doc_row(const FieldRow& field) {
+  DocRow row{field.name, "", "", range_text(field.range), field.unit, field.effect};
+  const auto fill = [&](const auto& value) {
+    using T = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<T, double>) {
+      row.type = "number";
+      row.default_value = number_text(value);
+    } else if constexpr (std::is_same_v<T, std::int64_t>) {
+      row.type = "integer";
+      row.default_value = std::to_string(value);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      row.type = "truth value";
+      row.default_value = value ? "true" : "false";
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      row.type = "text";
+      row.default_value = code(value);
+    } else {
+      row.type = std::is_same_v<T, std::vector<Vec2>> ? "list of [x, y]" : "list of texts";
+      row.default_value = "`[]`";
+    }
+  };
+  std::visit(fill, field.default_value);
+  if (!field.has_default()) row.default_value = field.required ? "required" : "";
+  for (const std::string_view choice : field.choices) {
+    row.range += (row.range.empty() ? "" : ", ") + code(choice);
+  }
+  return row;
+}
+
+void append_rows(std::vector<DocRow>& rows, std::span<const FieldRow> table) {
+  for (const FieldRow& field : table) rows.push_back(doc_row(field));
+}
+
+void append_rows(std::vector<DocRow>& rows, std::span<const SceneKey> keys) {
+  for (const SceneKey& key : keys) {
+    const std::string shown(key.default_value);
+    const bool is_value = shown.starts_with('{') || shown.starts_with('[');
+    rows.push_back({key.name, key.type, is_value ? code(shown) : shown, range_text(key.range),
+                    key.unit, key.effect});
+  }
+}
+
+std::string pattern_tables() {
+  std::string text;
+  const auto patterns = pattern_rows();
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    std::vector<DocRow> rows;
+    append_rows(rows, patterns[i]);
+    text += "### Pattern " + code(kPatternTypes[i]) + "\n\n" + std::string(kPatternEffects[i]) +
+            "\n\n" + table(rows);
+  }
+  return text;
+}
+
+std::string materials_table() {
+  std::string text =
+      "| name | density kg/m³ | Young's modulus Pa | Poisson's ratio | tensile strength Pa | "
+      "fracture energy J/m² | source |\n|---|---|---|---|---|---|---|\n";
+  for (const Material& material : builtin_materials()) {
+    text += "| " + code(material.name);
+    for (const double value : {material.density, material.youngs_modulus, material.poisson_ratio,
+                               material.tensile_strength, material.fracture_energy}) {
+      text += " | " + number_text(value);
+    }
+    text += " | " + cell(material.source) + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string parameters_markdown() {
+  std::string text =
+      "# Scene parameters\n\n"
+      "Written by `./dev docs` from the tables that the reader uses; a test fails when it is out "
+      "of date. Lengths are metres, angles in files are degrees. A key that is not listed is an "
+      "error. `sunder schema scene` prints the same as a JSON schema for editors.\n\n"
+      "## Scene\n\n";
+  std::vector<DocRow> rows;
+  append_rows(rows, kSceneKeys);
+  text += table(rows) + "## Wall\n\n";
+  rows.clear();
+  append_rows(rows, field_rows<Wall>());
+  append_rows(rows, kWallKeys);
+  text += table(rows) + "## Shape\n\nOf outlines and openings.\n\n";
+  rows.clear();
+  append_rows(rows, kShapeKeys);
+  text += table(rows) + "## Pattern\n\nThe key `type` is required and chooses the others.\n\n";
+  text += pattern_tables() + "## Material\n\n";
+  rows.clear();
+  append_rows(rows, field_rows<Material>());
+  return text + table(rows) + "## Built-in materials\n\n" + materials_table();
+}
+
+}  // namespace sunder

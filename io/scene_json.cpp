@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <filesystem>
+#include <unordered_set>
+
+#include "io/materials.hpp"
+#include "io/overrides.hpp"
+#include "io/printable.hpp"
+#include "io/scene.hpp"
+#include "io/scene_keys.hpp"
+#include "io/strict_json.hpp"
+#include "meshing/error.hpp"
+
+namespace sunder {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Fails for the pair of keys when low > high; either may be left at its default.
+void check_order(const Place& object, std::string_view low_key, double low,
+                 std::string_view high_key, double high) {
+  if (low <= high) return;
+  const JsonValue* given = object.value.find(high_key);
+  const std::string_view key = given ? high_key : low_key;
+  const Place place(object, key, given ? *given : *object.value.find(low_key));
+  place.fail(std::string(low_key) + " = " + number_text(low) + " must not be above " +
+             std::string(high_key) + " = " + number_text(high));
+}
+
+template <class Params>
+void check_together(const Params&, const Place&) {}
+
+void check_together(const SpiderwebParams& params, const Place& place) {
+  check_order(place, "min_points", static_cast<double>(params.min_points), "max_points",
+              static_cast<double>(params.max_points));
+  check_order(place, "min_radius", params.min_radius, "max_radius", params.max_radius);
+}
+
+template <class Params>
+PatternParams read_pattern_params(const Place& place) {
+  check_keys(place, keys_of<Params>({"type"}));
+  Params params;
+  read_fields(params, place);
+  check_together(params, place);
+  return params;
+}
+
+/// The reader of pattern type i, for every i: the variant and kPatternTypes have one order.
+template <std::size_t... i>
+PatternParams read_pattern_of(std::size_t type, const Place& place, std::index_sequence<i...>) {
+  using Reader = PatternParams (*)(const Place&);
+  constexpr Reader kReaders[] = {
+      &read_pattern_params<std::variant_alternative_t<i, PatternParams>>...};
+  return kReaders[type](place);
+}
+
+PatternParams read_pattern(const Place& place) {
+  constexpr std::size_t kTypes = std::variant_size_v<PatternParams>;
+  static_assert(std::size(kPatternTypes) == kTypes);
+  object_at(place);
+  require_key(place, "type", "\"type\": \"voronoi-grid\"");
+  const std::string type = text_at(Place(place, "type", *place.value.find("type")), kPatternTypes);
+  const auto found = std::find(std::begin(kPatternTypes), std::end(kPatternTypes), type);
+  return read_pattern_of(static_cast<std::size_t>(found - std::begin(kPatternTypes)), place,
+                         std::make_index_sequence<kTypes>());
+}
+
+Loop read_shape(const Place& place) {
+  std::vector<std::string_view> keys;
+  append_keys(keys, kShapeKeys);
+  check_keys(place, keys);
+  const JsonValue* rect = place.value.find("rect");
+  const JsonValue* polygon = place.value.find("polygon");
+  const JsonValue* at = place.value.find("at");
+  if (!rect == !polygon) {
+    place.fail("give one of \"rect\": [width, height] and \"polygon\": [[x, y], …], got " +
+               std::string(rect ? "both" : "neither"));
+  }
+  if (polygon) {
+    if (at) Place(place, "at", *at).fail("\"at\" goes with \"rect\", a polygon has its own place");
+    return pairs_at(Place(place, "polygon", *polygon), 3, kShapePlace, "m");
+  }
+  const Vec2 size = pair_at(Place(place, "rect", *rect), kShapeSize, "m");
+  return rectangle(size, at ? pair_at(Place(place, "at", *at), kShapePlace, "m") : Vec2{});
+}
+
+/// True when `path` lies in `folder` or below; both canonical.
+bool is_inside(const fs::path& path, const fs::path& folder) {
+  const auto [folder_end, ignored] =
+      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return folder_end == folder.end();
+}
+
+/// Path of an asset that a scene in `folder` names. Symbolic links count as where they lead.
+std::string resolve_asset(const Place& place, const fs::path& folder, bool allow_outside) {
+  const fs::path given = text_at(place);
+  if (given.empty()) place.fail("an asset is the path of a file, got an empty text");
+  const std::string shown = "the asset " + describe(place.value);
+  const fs::path path = (folder / given).lexically_normal();
+  std::error_code fault;
+  const fs::path home =
+      fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder, fault), fault);
+  if (fault) place.fail("the scene's folder cannot be read: " + fault.message());
+  const fs::path real = fs::weakly_canonical(fs::absolute(path, fault), fault);
+  if (fault) place.fail(shown + " cannot be found: " + fault.message());
+  if (!allow_outside && (given.is_absolute() || !is_inside(real, home))) {
+    place.fail(shown +
+               " is not in the scene's folder; move it there or allow it with --allow-outside");
+  }
+  if (!fs::is_regular_file(real, fault)) {
+    place.fail(shown + (fs::exists(real, fault) ? " is not a regular file" : " does not exist") +
+               ", paths are relative to the scene file");
+  }
+  return path.string();
+}
+
+/// What reading one wall needs from the scene around it.
+struct WallContext {
+  const std::vector<Material>& materials;
+  const fs::path& folder;
+  bool allow_outside;
+};
+
+/// An asset brings its own outline, openings and pattern.
+void read_asset(Wall& wall, const Place& place, const WallContext& context) {
+  const JsonValue* asset = place.value.find("asset");
+  if (!asset) return;
+  for (const std::string_view key : {"outline", "openings", "pattern"}) {
+    if (const JsonValue* value = place.value.find(key)) {
+      Place(place, key, *value)
+          .fail('"' + std::string(key) +
+                "\" does not go with \"asset\", whose file has its own; leave one out");
+    }
+  }
+  wall.asset = resolve_asset(Place(place, "asset", *asset), context.folder, context.allow_outside);
+}
+
+void read_region(Wall& wall, const Place& place) {
+  if (const JsonValue* outline = place.value.find("outline")) {
+    wall.region.outline = read_shape(Place(place, "outline", *outline));
+  }
+  if (const JsonValue* openings = place.value.find("openings")) {
+    const Place list(place, "openings", *openings);
+    for (std::size_t i = 0; i < list_at(list).size(); ++i) {
+      wall.region.openings.push_back(read_shape(Place(list, i)));
+    }
+  }
+}
+
+Wall read_wall(const Place& place, const WallContext& context) {
+  std::vector<std::string_view> keys = keys_of<Wall>();
+  append_keys(keys, kWallKeys);
+  check_keys(place, keys);
+  Wall wall;
+  wall.name = place.index == 0 ? "wall" : "wall_" + std::to_string(place.index + 1);
+  read_fields(wall, place);
+  if (const JsonValue* name = place.value.find("name")) name_at(Place(place, "name", *name));
+  if (const JsonValue* material = place.value.find("material")) {
+    const std::string fault = material_fault(context.materials, wall.material);
+    if (!fault.empty()) Place(place, "material", *material).fail(fault);
+  }
+  read_asset(wall, place, context);
+  read_region(wall, place);
+  if (const JsonValue* pattern = place.value.find("pattern")) {
+    wall.pattern = read_pattern(Place(place, "pattern", *pattern));
+  }
+  if (const JsonValue* position = place.value.find("position")) {
+    wall.position = triple_at(Place(place, "position", *position), kShapePlace, "m");
+  }
+  if (const JsonValue* rotation = place.value.find("rotation_deg")) {
+    wall.rotation =
+        rotation_from_degrees(triple_at(Place(place, "rotation_deg", *rotation), kTurn, "degrees"));
+  }
+  return wall;
+}
+
+void read_walls(Scene& scene, const Place& list, const WallContext& context) {
+  std::unordered_set<std::string> names;
+  for (std::size_t i = 0; i < list_at(list).size(); ++i) {
+    const Place place(list, i);
+    scene.walls.push_back(read_wall(place, context));
+    const std::string& name = scene.walls.back().name;
+    if (!names.insert(name).second) {
+      const JsonValue* given = place.value.find("name");
+      (given ? Place(place, "name", *given) : place)
+          .fail("a wall named \"" + name + "\" exists already, names must differ");
+    }
+  }
+}
+
+void check_version(const Place& scene) {
+  require_key(scene, "sunder", "\"sunder\": 1");
+  const Place place(scene, "sunder", *scene.value.find("sunder"));
+  if (!place.value.is_number() || place.value.number() != kSceneVersion.low) {
+    place.fail("must be 1, the version of the scene format, got " + describe(place.value));
+  }
+}
+
+/// Keys for other verbs: only that they are what they must be.
+void read_not_used(Scene& scene, const Place& place) {
+  for (const std::string_view key : {"projectiles", "building", "simulation"}) {
+    const JsonValue* value = place.value.find(key);
+    if (!value) continue;
+    const Place member(place, key, *value);
+    if (key == "projectiles") {
+      for (std::size_t i = 0; i < list_at(member).size(); ++i) object_at(Place(member, i));
+    } else {
+      object_at(member);
+    }
+    scene.not_used.emplace_back(key);
+  }
+}
+
+Scene read_tree(const Place& place, const fs::path& folder, bool allow_outside) {
+  std::vector<std::string_view> keys;
+  append_keys(keys, kSceneKeys);
+  check_keys(place, keys);
+  check_version(place);
+  Scene scene;
+  scene.materials = builtin_materials();
+  if (const JsonValue* schema = place.value.find("$schema")) {
+    text_at(Place(place, "$schema", *schema));
+  }
+  if (const JsonValue* seed = place.value.find("seed")) {
+    scene.seed = natural_at(Place(place, "seed", *seed));
+  }
+  if (const JsonValue* materials = place.value.find("materials")) {
+    read_materials(Place(place, "materials", *materials), scene.materials);
+  }
+  read_not_used(scene, place);
+  const JsonValue* walls = place.value.find("walls");
+  const WallContext context{scene.materials, folder, allow_outside};
+  if (walls) read_walls(scene, Place(place, "walls", *walls), context);
+  if (scene.walls.empty() && !place.value.find("building")) {
+    const std::string example = "for example \"walls\": [{\"outline\": {\"rect\": [6, 3]}}]";
+    if (walls) Place(place, "walls", *walls).fail("no wall and no building, " + example);
+    place.fail("the key \"walls\" is missing, " + example);
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& name, const SceneParams& params) {
+  JsonValue root = parse_json(text, name);
+  const Place place(name, root);
+  object_at(place);
+  for (const std::string& override_text : params.overrides) apply_override(root, override_text);
+  return read_tree(place, fs::path(name).parent_path(), params.allow_outside);
+}
+
+Scene read_scene(const std::filesystem::path& path, const SceneParams& params) {
+  return parse_scene(read_text_file(path), path.string(), params);
+}
+
+}  // namespace sunder

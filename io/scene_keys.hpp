@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include "fracture/wall.hpp"
+#include "meshing/field.hpp"
+
+namespace sunder {
+
+/// A scene key that is not a plain field of a parameter struct. Like Field, one row feeds the
+/// reader, the JSON schema and the documentation.
+struct SceneKey {
+  std::string_view name;
+  std::string_view type;           ///< as the documentation shows it
+  std::string_view default_value;  ///< as the documentation shows it
+  std::string_view unit;
+  std::string_view effect;
+  Range range = {};  ///< of each number
+};
+
+// Valid values of the keys below.
+constexpr Range kSceneVersion{1, 1};
+constexpr Range kShapeSize{1e-6, 1e6};   // m
+constexpr Range kShapePlace{-1e6, 1e6};  // m
+constexpr Range kTurn{-360, 360};        // degrees
+
+inline constexpr SceneKey kSceneKeys[] = {
+    {"$schema", "text", "", "", "Where an editor finds the JSON schema; not read."},
+    {"sunder", "integer", "required", "", "Version of the scene format: 1.", kSceneVersion},
+    {"seed", "integer", "1", "",
+     "Chooses the random numbers; the same seed gives the same bytes. 64 bits."},
+    {"walls", "list of walls", "required unless there is a building", "", "The walls, see below."},
+    {"materials", "list of materials", "[]", "",
+     "Materials of the scene's own. One with the name of a built-in material replaces the values "
+     "it gives."},
+    {"projectiles", "list", "[]", "", "What hits the walls; `sunder fracture` does not use it."},
+    {"building", "object", "none", "", "A frame building; `sunder fracture` does not use it."},
+    {"simulation", "object", "none", "",
+     "How long and how exactly to simulate; `sunder fracture` does not use it."},
+};
+
+inline constexpr SceneKey kWallKeys[] = {
+    {"outline", "shape", "{\"rect\": [6, 3]}", "", "The wall's outline in its own plane."},
+    {"openings", "list of shapes", "[]", "",
+     "Doors and windows; they may touch the outline and each other but neither cross nor overlap."},
+    {"pattern", "pattern", "{\"type\": \"voronoi-grid\"}", "", "How the wall breaks into cells."},
+    {"position", "[x, y, z]", "[0, 0, 0]", "m", "Where the wall's origin is in the world.",
+     kShapePlace},
+    {"rotation_deg", "[x, y, z]", "[0, 0, 0]", "degrees",
+     "Turns about the world's x, then y, then z axis through the wall's origin.", kTurn},
+};
+
+inline constexpr SceneKey kShapeKeys[] = {
+    {"rect", "[width, height]", "this or polygon", "m", "A rectangle with this size.", kShapeSize},
+    {"at", "[x, y]", "[0, 0]", "m", "Lower left corner of the rectangle.", kShapePlace},
+    {"polygon", "list of [x, y]", "this or rect", "m",
+     "At least three corners in either direction, without self-intersection.", kShapePlace},
+};
+
+/// What each generator does, in the order of kPatternTypes.
+inline constexpr std::string_view kPatternEffects[] = {
+    "Voronoi cells of one random site per grid cell: chunks of like size.",
+    "Voronoi cells of sites given by hand.",
+    "Voronoi cells of independent uniform sites: chunks of very different sizes.",
+    "Voronoi cells of sites that lie denser around the given points, as around an impact.",
+    "Quads between the jittered points of a grid.",
+    "Local damage around impact points: a polygon with ring and radial cracks, larger cells "
+    "elsewhere.",
+};
+static_assert(std::size(kPatternEffects) == std::size(kPatternTypes));
+
+/// Letters that names may have: they end up in files that other programs read. At most 40, so that
+/// "<name>_chunk_000000" stays below 57.
+constexpr std::size_t kMaxNameLength = 40;
+inline constexpr std::string_view kNamePattern = "^[A-Za-z0-9_-]{1,40}$";
+
+/// Appends the names of a table's rows.
+template <std::size_t count>
+void append_keys(std::vector<std::string_view>& keys, const SceneKey (&table)[count]) {
+  for (const SceneKey& row : table) keys.push_back(row.name);
+}
+
+}  // namespace sunder

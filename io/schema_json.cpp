@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/field_row.hpp"
+#include "io/printable.hpp"
+#include "io/scene.hpp"
+#include "io/scene_keys.hpp"
+#include "io/suggest.hpp"
+#include "meshing/error.hpp"
+
+// The scene's schema is made of the tables that its reader uses.
+namespace sunder {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Integers as integers: a schema's reader should not see 1.0.
+Json json_number(double value) {
+  if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+/// A number or integer and its valid values.
+Json number_schema(const char* type, const Range& range) {
+  Json schema{{"type", type}};
+  if (std::isfinite(range.low)) {
+    schema[range.open ? "exclusiveMinimum" : "minimum"] = json_number(range.low);
+  }
+  if (std::isfinite(range.high)) schema["maximum"] = json_number(range.high);
+  return schema;
+}
+
+/// A list of `size` numbers.
+Json tuple_schema(std::size_t size, const Range& range) {
+  return {{"type", "array"},
+          {"items", number_schema("number", range)},
+          {"minItems", size},
+          {"maxItems", size}};
+}
+
+Json list_schema(Json items, std::size_t least = 0) {
+  Json schema{{"type", "array"}, {"items", std::move(items)}};
+  if (least) schema["minItems"] = least;
+  return schema;
+}
+
+Json text_schema(std::span<const std::string_view> choices = {}) {
+  Json schema{{"type", "string"}};
+  if (!choices.empty())
+    schema["enum"] = Json(std::vector<std::string>(choices.begin(), choices.end()));
+  return schema;
+}
+
+Json name_schema() {
+  return {{"type", "string"}, {"pattern", std::string(kNamePattern)}};
+}
+
+Json reference(const std::string& definition) {
+  return {{"$ref", "#/definitions/" + definition}};
+}
+
+std::string description_of(std::string_view effect, std::string_view unit) {
+  return std::string(effect) + (unit.empty() ? "" : " Unit: " + std::string(unit) + '.');
+}
+
+/// An object with these properties and no other.
+Json object_schema(Json properties, std::vector<std::string> required = {}) {
+  Json schema{{"type", "object"}, {"properties", std::move(properties)}};
+  if (!required.empty()) schema["required"] = std::move(required);
+  schema["additionalProperties"] = false;
+  return schema;
+}
+
+/// The schema of one field's values; the default stands there when a file could give it.
+Json field_schema(const FieldRow& row) {
+  const auto make = [&](const auto& value) -> Json {
+    using T = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<T, double>) {
+      return number_schema("number", row.range);
+    } else if constexpr (std::is_same_v<T, std::int64_t>) {
+      return number_schema("integer", row.range);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      return {{"type", "boolean"}};
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      return row.name == "name" ? name_schema() : text_schema(row.choices);
+    } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+      Json schema = list_schema(text_schema(row.choices));
+      schema["uniqueItems"] = true;
+      return schema;
+    } else {
+      return list_schema(tuple_schema(2, row.range), row.required ? 1 : 0);
+    }
+  };
+  Json schema = std::visit(make, row.default_value);
+  if (const auto* number = std::get_if<double>(&row.default_value)) {
+    if (row.has_default()) schema["default"] = json_number(*number);
+  } else if (const auto* integer = std::get_if<std::int64_t>(&row.default_value)) {
+    schema["default"] = *integer;
+  } else if (const auto* text = std::get_if<std::string>(&row.default_value)) {
+    if (row.has_default()) schema["default"] = *text;
+  }
+  schema["description"] = description_of(row.effect, row.unit);
+  return schema;
+}
+
+/// An object with a struct's fields, after `properties` and `required`.
+Json fields_schema(std::span<const FieldRow> rows, Json properties = Json::object(),
+                   std::vector<std::string> required = {}) {
+  for (const FieldRow& row : rows) {
+    properties[std::string(row.name)] = field_schema(row);
+    if (row.required) required.emplace_back(row.name);
+  }
+  return object_schema(std::move(properties), std::move(required));
+}
+
+/// Adds a row's description; a reference may not have siblings in this draft.
+void add_key(Json& properties, const SceneKey& row, Json schema) {
+  const std::string description = description_of(row.effect, row.unit);
+  if (schema.contains("$ref")) schema = Json{{"allOf", Json::array({std::move(schema)})}};
+  schema["description"] = description;
+  properties[std::string(row.name)] = std::move(schema);
+}
+
+Json shape_schema() {
+  const auto& [rect, at, polygon_row] = kShapeKeys;
+  Json rectangle = Json::object(), polygon = Json::object();
+  add_key(rectangle, rect, tuple_schema(2, rect.range));
+  add_key(rectangle, at, tuple_schema(2, at.range));
+  add_key(polygon, polygon_row, list_schema(tuple_schema(2, polygon_row.range), 3));
+  return {{"oneOf", Json::array({object_schema(std::move(rectangle), {"rect"}),
+                                 object_schema(std::move(polygon), {"polygon"})})}};
+}
+
+Json pattern_schema() {
+  Json alternatives = Json::array();
+  const auto patterns = pattern_rows();
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    Json properties{{"type", {{"const", std::string(kPatternTypes[i])}}}};
+    Json schema = fields_schema(patterns[i], std::move(properties), {"type"});
+    schema["description"] = std::string(kPatternEffects[i]);
+    alternatives.push_back(std::move(schema));
+  }
+  return {{"type", "object"}, {"oneOf", std::move(alternatives)}};
+}
+
+Json wall_schema() {
+  const std::array<Json, std::size(kWallKeys)> schemas{
+      reference("shape"), list_schema(reference("shape")), reference("pattern"),
+      tuple_schema(3, kShapePlace), tuple_schema(3, kTurn)};
+  Json schema = fields_schema(field_rows<Wall>());
+  for (std::size_t i = 0; i < std::size(kWallKeys); ++i) {
+    add_key(schema["properties"], kWallKeys[i], schemas[i]);
+  }
+  schema["if"] = {{"required", {"asset"}}};
+  schema["then"] = {{"properties", {{"outline", false}, {"openings", false}, {"pattern", false}}}};
+  return schema;
+}
+
+Json with_title(const std::string& title, Json schema) {
+  Json whole{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  whole.update(schema);
+  return whole;
+}
+
+Json scene_schema() {
+  Json version = number_schema("integer", kSceneVersion);
+  Json seed{{"type", "integer"}, {"minimum", 0}, {"maximum", ~std::uint64_t{0}}, {"default", 1}};
+  const Json objects = list_schema({{"type", "object"}});
+  const std::array<Json, std::size(kSceneKeys)> schemas{text_schema(),
+                                                        version,
+                                                        seed,
+                                                        list_schema(reference("wall")),
+                                                        list_schema(reference("material")),
+                                                        objects,
+                                                        {{"type", "object"}},
+                                                        {{"type", "object"}}};
+  Json properties = Json::object();
+  for (std::size_t i = 0; i < std::size(kSceneKeys); ++i) {
+    add_key(properties, kSceneKeys[i], schemas[i]);
+  }
+  Json schema = object_schema(std::move(properties), {"sunder"});
+  schema["anyOf"] = Json::array({Json{{"required", {"walls"}}}, Json{{"required", {"building"}}}});
+  schema["definitions"] = {{"wall", wall_schema()},
+                           {"shape", shape_schema()},
+                           {"pattern", pattern_schema()},
+                           {"material", fields_schema(field_rows<Material>())}};
+  return with_title("sunder scene", std::move(schema));
+}
+
+/// A number of a report.
+struct ReportKey {
+  const char* name;
+  const char* type;
+  const char* description;
+};
+
+constexpr ReportKey kReportKeys[] = {
+    {"version", "string", "Version of the program."},
+    {"seed", "integer", "Seed of the random numbers."},
+    {"sound", "boolean",
+     "True when no chunk is open, not manifold or inverted, none overlap, every inner face is "
+     "matched, and the volume is right to 1e-6 where the one expected is known."},
+    {"chunks", "integer", "Chunks of all walls."},
+    {"triangles", "integer", "Triangles of all chunks."},
+    {"bonds", "integer", "Bonds between chunks and anchors to the world."},
+    {"volume", "number", "Sum of the chunks' volumes. Unit: m³."},
+    {"volume_expected", "number",
+     "Area of the outlines less the openings, by thickness. Unit: m³."},
+    {"volume_error", "number", "Difference of the two by the volume expected."},
+    {"open_chunks", "integer", "Chunks with an edge that only one triangle has."},
+    {"nonmanifold_chunks", "integer", "Chunks with an edge of more than two triangles."},
+    {"inverted_chunks", "integer", "Closed chunks whose volume is not above 0."},
+    {"overlapping_pairs", "integer", "Pairs of chunks whose front faces overlap."},
+    {"unmatched_faces", "integer", "Inner triangles without exactly one partner in another chunk."},
+    {"slivers", "integer", "Chunks whose front is thinner than 1:50."},
+    {"slivers_merged", "integer",
+     "Cells that were merged because they were smaller than min_cell."},
+    {"min_chunk_volume", "number", "Volume of the smallest chunk. Unit: m³."},
+    {"hash", "string", "Of all triangles, bit for bit; 16 hexadecimal digits."},
+};
+
+Json report_schema() {
+  Json properties = Json::object();
+  std::vector<std::string> required;
+  for (const ReportKey& key : kReportKeys) {
+    Json schema{{"type", key.type}, {"description", key.description}};
+    if (schema["type"] == "integer") schema["minimum"] = 0;
+    properties[key.name] = std::move(schema);
+  }
+  // A measure that a format cannot tell is null, not left out.
+  for (const char* key : {"volume_expected", "volume_error", "min_chunk_volume"}) {
+    properties[key]["type"] = {"number", "null"};
+  }
+  properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
+  properties["time"] = {{"type", "object"},
+                        {"description", "What each step took, keys end in _s. Unit: s."},
+                        {"patternProperties", {{"_s$", {{"type", "number"}, {"minimum", 0}}}}}};
+  properties["skipped"] = {{"type", "object"},
+                           {"description", "What was not done because nothing needed it."}};
+  for (const char* key : {"sound", "chunks", "triangles", "volume", "hash"}) {
+    required.emplace_back(key);
+  }
+  Json schema = object_schema(std::move(properties), std::move(required));
+  schema["additionalProperties"] = true;
+  return with_title("sunder report of fracture and check", std::move(schema));
+}
+
+}  // namespace
+
+std::string json_schema(std::string_view which) {
+  constexpr std::string_view kNames[] = {"scene", "material", "report"};
+  if (which == "scene") return scene_schema().dump(2) + '\n';
+  if (which == "material") {
+    return with_title("sunder material", fields_schema(field_rows<Material>())).dump(2) + '\n';
+  }
+  if (which == "report") return report_schema().dump(2) + '\n';
+  throw Error(ErrorCode::usage,
+              "no schema of \"" + printable(which, 40) + '"' + hint_for(which, kNames));
+}
+
+}  // namespace sunder

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace sunder {
+
+/// One row of tests/corpus/scenes/*.txt.
+struct CorpusRow {
+  std::string name;
+  std::vector<std::string> expected;  ///< that the message must hold
+  std::string text;
+  friend std::ostream& operator<<(std::ostream& out, const CorpusRow& row) {
+    return out << row.name;
+  }
+};
+
+/// <FF> stands for the byte with that hexadecimal number.
+inline std::string unescaped(const std::string& line) {
+  std::string bytes;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool is_byte = line[i] == '<' && i + 3 < line.size() && line[i + 3] == '>';
+    if (is_byte) {
+      bytes += static_cast<char>(std::stoi(line.substr(i + 1, 2), nullptr, 16));
+      i += 3;
+    } else {
+      bytes += line[i];
+    }
+  }
+  return bytes;
+}
+
+/// The rows of a corpus file; what stands before the first one is its comment.
+inline std::vector<CorpusRow> read_corpus(const std::string& file) {
+  std::ifstream in(std::string(SUNDER_SOURCE_DIR) + "/tests/corpus/scenes/" + file);
+  if (!in) throw std::runtime_error("the corpus " + file + " is missing");
+  std::vector<CorpusRow> rows;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("== ")) {
+      rows.push_back({line.substr(3), {}, {}});
+    } else if (rows.empty() || line.empty()) {
+      continue;
+    } else if (line.starts_with("! ")) {
+      rows.back().expected.push_back(line.substr(2));
+    } else {
+      rows.back().text += (rows.back().text.empty() ? "" : "\n") + unescaped(line);
+    }
+  }
+  return rows;
+}
+
+/// A scene that gives every key there is; the base of mutations.
+inline constexpr const char* kFullScene = R"json({
+  "$schema": "scene.schema.json",
+  "sunder": 1,
+  "seed": 7,
+  "walls": [
+    {"name": "facade", "outline": {"rect": [6.5, 3.5], "at": [1.5, 2.5]},
+     "openings": [{"rect": [0.9, 2.1], "at": [2, 2.5]},
+                  {"polygon": [[4, 3], [5, 3], [5, 4], [4, 4]]}],
+     "thickness": 0.25, "material": "granite", "min_cell": 0.01,
+     "pattern": {"type": "voronoi-grid", "cell": 0.35, "jitter": 0.9},
+     "anchors": ["bottom", "left"], "position": [1, 2, 3], "rotation_deg": [0, 90, 0]},
+    {"name": "b", "outline": {"polygon": [[0, 0], [4, 0], [2, 3]]},
+     "pattern": {"type": "voronoi-sites", "sites": [[1, 1], [2, 2]]}},
+    {"name": "c", "pattern": {"type": "voronoi-random", "count": 60}},
+    {"name": "d", "pattern": {"type": "voronoi-focus", "points": [[3, 1]], "count": 90,
+                              "radius": 0.5, "share": 0.6}},
+    {"name": "e", "pattern": {"type": "quad-grid", "cell": 0.4, "jitter": 0.5,
+                              "destroy": "points"}},
+    {"name": "f", "pattern": {"type": "spiderweb", "impacts": [[3, 1.5]], "min_points": 6,
+                              "max_points": 9, "min_radius": 0.2, "max_radius": 0.5, "rings": 3,
+                              "radial": 8, "reach": 1.5, "rest_cell": 0.7}}
+  ],
+  "materials": [{"name": "granite", "density": 2700, "youngs_modulus": 5e10,
+                 "poisson_ratio": 0.25, "tensile_strength": 7e6, "fracture_energy": 100,
+                 "source": "a quarry"}],
+  "projectiles": [{"radius": 0.25}],
+  "building": {"storeys": 6},
+  "simulation": {"duration": 5}
+})json";
+
+}  // namespace sunder
