@@ -209,7 +209,8 @@ std::string WallAsset::chunk_name(std::uint32_t chunk) const {
   return wall.name + "_chunk_" + number;
 }
 
-WallPattern make_pattern(const Wall& wall, const FractureParams& params, FractureStats* stats) {
+WallPattern make_pattern(const Wall& given, const FractureParams& params, FractureStats* stats) {
+  const Wall wall = with_local_origin(given);
   FractureStats own;
   FractureStats& s = stats ? *stats : own;
   WallPattern result = std::visit(PatternMaker(wall, params, s), wall.pattern);
@@ -218,7 +219,8 @@ WallPattern make_pattern(const Wall& wall, const FractureParams& params, Fractur
   return result;
 }
 
-WallAsset fracture_wall(const Wall& wall, double density, const FractureParams& params) {
+WallAsset fracture_wall(const Wall& given, double density, const FractureParams& params) {
+  const Wall wall = with_local_origin(given);
   const auto report = [&](double done) {
     if (params.progress) params.progress(done);
   };

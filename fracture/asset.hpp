@@ -27,7 +27,7 @@ struct FractureStats {
 
 /// A pre-fractured wall: cell c of the pattern, extruded, is chunk c.
 struct WallAsset {
-  Wall wall;
+  Wall wall;                         ///< with its local origin (with_local_origin)
   double density = 2400;             ///< kg/m³
   LatticeRegion region;              ///< outline and openings; `across` borders are its edges
   Pattern pattern;                   ///< cells after cutting and merging
@@ -59,7 +59,8 @@ struct WallPattern {
   Pattern pattern;
 };
 /// The wall's pattern: sites or points, cells, cut by outline and openings, slivers merged.
-/// Throws Error{geometry} as make_lattice_region and the generators do.
+/// In the wall's local frame: origin at the lower left of the outline's bounding box. Throws
+/// Error{geometry} as make_lattice_region and the generators do.
 WallPattern make_pattern(const Wall& wall, const FractureParams& params,
                          FractureStats* stats = nullptr);
 

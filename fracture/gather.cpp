@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <set>
 #include <tuple>
 
 namespace sunder {
@@ -56,8 +59,9 @@ class Gatherer {
     join_small_cells(
         [&](const Cell& c) { return !c.is_damaged && c.area < kSmallest * params_.cell_area; },
         false);
-    join_small_cells([&](const Cell& c) { return 2 * c.area < params_.least_width * c.perimeter; },
+    join_small_cells([&](const Cell& c) { return 2 * c.area <= params_.least_width * c.perimeter; },
                      true);
+    contract_short_edges();
     return make_pattern();
   }
 
@@ -76,10 +80,11 @@ class Gatherer {
     return t;
   }
   std::uint32_t start_of(std::uint32_t edge) const { return field_.triangles[edge / 3][edge % 3]; }
+  std::uint32_t end_of(std::uint32_t edge) const {
+    return field_.triangles[edge / 3][(edge % 3 + 1) % 3];
+  }
   double edge_length(std::uint32_t edge) const {
-    const auto& t = field_.triangles[edge / 3];
-    return length(field_.vertices[t[(edge + 1 - 3 * (edge / 3)) % 3]] -
-                  field_.vertices[start_of(edge)]);
+    return length(field_.vertices[end_of(edge)] - field_.vertices[start_of(edge)]);
   }
   Across across(std::uint32_t edge) const { return field_.across[edge / 3][edge % 3]; }
 
@@ -202,6 +207,59 @@ class Gatherer {
     }
   }
 
+  // 0 inside, 1 on one boundary edge, 2 where boundary edges meet: how much a vertex must stay.
+  int firmness(std::uint32_t v) const {
+    int first = -1;
+    for (std::uint32_t i = first_at_[v]; i < first_at_[v + 1]; ++i)
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const auto& t = field_.triangles[at_[i]];
+        const Across beyond = field_.across[at_[i]][k];
+        if (!beyond.is_border() || (t[k] != v && t[(k + 1) % 3] != v)) continue;
+        const int edge = static_cast<int>(beyond.border());
+        if (first >= 0 && first != edge) return 2;
+        first = edge;
+      }
+    return first >= 0 ? 1 : 0;
+  }
+
+  std::set<std::uint32_t> cells_at(std::uint32_t vertex) {
+    std::set<std::uint32_t> cells;
+    for (const std::uint32_t v : merged_[vertex])
+      for (std::uint32_t i = first_at_[v]; i < first_at_[v + 1]; ++i) cells.insert(find(at_[i]));
+    return cells;
+  }
+
+  // Crossings of three cracks at one place come out as vertices a rounding error apart. Two ends of
+  // a short edge become one where no cell but the edge's own touches both, so that discs stay
+  // discs.
+  void contract_short_edges() {
+    representative_.resize(field_.vertices.size());
+    std::iota(representative_.begin(), representative_.end(), 0u);
+    merged_.clear();
+    for (std::uint32_t c = 0; c < cells_.size(); ++c)
+      for (const std::uint32_t edge : cells_[c].edges)
+        if (edge_length(edge) < params_.least_edge) contract(edge);
+  }
+  void contract(std::uint32_t edge) {
+    std::uint32_t keep = representative_[start_of(edge)];
+    std::uint32_t drop = representative_[end_of(edge)];
+    if (keep == drop) return;
+    if (firmness(keep) < firmness(drop)) std::swap(keep, drop);
+    const int firm = firmness(drop);
+    if (firm == 2 || (firm == 1 && !across(edge).is_border())) return;
+    for (const std::uint32_t v : {keep, drop}) merged_.try_emplace(v, 1, v);
+    const auto a = cells_at(keep), b = cells_at(drop);
+    std::vector<std::uint32_t> both;
+    std::ranges::set_intersection(a, b, std::back_inserter(both));
+    if (both.size() != (across(edge).is_border() ? 1u : 2u)) return;
+    if (std::ranges::any_of(both, [&](std::uint32_t c) { return loop_of(c).size() <= 3; })) return;
+    for (const std::uint32_t v : merged_[drop]) {
+      representative_[v] = keep;
+      merged_[keep].push_back(v);
+    }
+    merged_.erase(drop);
+  }
+
   // The border of a cell in order, without the points that only split a boundary edge.
   std::vector<std::uint32_t> loop_of(std::uint32_t cell) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> by_start;
@@ -211,12 +269,15 @@ class Gatherer {
     std::uint32_t edge = by_start.front().second;
     do {
       loop.push_back(edge);
-      const std::uint32_t end = field_.triangles[edge / 3][(edge % 3 + 1) % 3];
+      const std::uint32_t end = end_of(edge);
       const auto next = std::ranges::lower_bound(by_start, std::pair{end, 0u});
       assert(next != by_start.end() && next->first == end);
       edge = next->second;
     } while (edge != by_start.front().second);
     assert(loop.size() == by_start.size());
+    std::erase_if(loop, [&](std::uint32_t e) {
+      return representative_[start_of(e)] == representative_[end_of(e)];
+    });
     std::vector<std::uint32_t> kept;
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Across before = across(loop[(k + loop.size() - 1) % loop.size()]);
@@ -238,7 +299,7 @@ class Gatherer {
     for (std::uint32_t t = 0; t < cells_.size(); ++t) roots[cell_of[t]] = find(t);
     for (const std::uint32_t root : roots) {
       for (const std::uint32_t edge : loop_of(root)) {
-        const std::uint32_t v = start_of(edge);
+        const std::uint32_t v = representative_[start_of(edge)];
         if (vertex_of[v] == kNone) {
           vertex_of[v] = static_cast<std::uint32_t>(pattern.vertices.size());
           pattern.vertices.push_back(field_.vertices[v]);
@@ -260,7 +321,9 @@ class Gatherer {
   const GatherParams& params_;
   std::vector<std::uint32_t> parent_;
   std::vector<Cell> cells_;
-  std::vector<std::uint32_t> first_at_, at_;  // triangles around each vertex
+  std::vector<std::uint32_t> first_at_, at_;   // triangles around each vertex
+  std::vector<std::uint32_t> representative_;  // of each vertex, itself unless contracted
+  std::map<std::uint32_t, std::vector<std::uint32_t>> merged_;  // the vertices it stands for
 };
 
 }  // namespace

@@ -22,9 +22,12 @@ struct CrackedTriangles {
 
 struct GatherParams {
   double cell_area = 1;  ///< of a cell outside the damage, about, m²
-  /// Cells narrower than this (twice their area over their perimeter) join a neighbour even across
+  /// Cells not wider than this (twice their area over their perimeter) join a neighbour even across
   /// a crack; m. For what rounding leaves between cracks that almost coincide.
   double least_width = 0;
+  /// Vertices nearer than this along an edge become one, those of the border stay where they are;
+  /// m.
+  double least_edge = 0;
 };
 
 /// Gathers triangles into cells that are topological discs: greedily the pair whose union is most

@@ -67,9 +67,9 @@ class WallMeasure {
   WallMeasure(const SoupWall& wall, Soundness& result) : wall_(wall), result_(result) {}
 
   void run(const std::function<void(double)>& progress) {
+    choose_front();
     for (std::uint32_t c = 0; c < wall_.chunk_count; ++c) {
       const SoupChunk chunk = wall_.chunk(c);
-      if (c == 0) choose_front(chunk);
       measure_chunk(c, chunk);
       if (c % 4096 == 0) progress(0.8 * c / wall_.chunk_count);
     }
@@ -90,21 +90,31 @@ class WallMeasure {
     return chunk.inner.empty() || !chunk.inner[t];
   }
 
-  // The wall's normal is that of the largest outer triangle of its first chunk.
-  void choose_front(const SoupChunk& chunk) {
-    double largest = 0;
-    for (std::size_t t = 0; 3 * t < chunk.triangles.size(); ++t) {
-      if (!is_outer(chunk, t)) continue;
-      const Vec3 n = twice_area(chunk, t);
-      if (length(n) <= largest) continue;
-      largest = length(n);
-      normal_ = (1 / largest) * n;
+  // Crack faces all contain the direction of the wall's thickness: it is perpendicular to any two
+  // of them that are not parallel. Looks at some of the chunks only.
+  void choose_front() {
+    std::vector<Vec3> cracks, outer;
+    const std::uint32_t step = 1 + wall_.chunk_count / 64;
+    for (std::uint32_t c = 0; c < wall_.chunk_count; c += step) {
+      const SoupChunk chunk = wall_.chunk(c);
+      for (std::size_t t = 0; 3 * t < chunk.triangles.size(); ++t) {
+        const Vec3 n = twice_area(chunk, t);
+        if (length(n) > 0) (is_outer(chunk, t) ? outer : cracks).push_back((1 / length(n)) * n);
+      }
     }
-    if (std::abs(normal_.z) > 1 - 1e-6) {
+    Vec3 axis;
+    for (const Vec3& crack : cracks)
+      if (const Vec3 n = cross(cracks[0], crack); length(n) > length(axis)) axis = n;
+    if (length(axis) < 1e-3)  // all cracks parallel: an outer face across them will do
+      for (const Vec3& n : outer)
+        if (cracks.empty() || std::abs(dot(n, cracks[0])) < 1e-3) axis = n;
+    if (!(length(axis) > 0)) return;
+    normal_ = (1 / length(axis)) * axis;
+    if (std::abs(normal_.z) > 1 - 1e-12) {
       normal_.z > 0 ? (right_ = {1, 0, 0}, up_ = {0, 1, 0}) : (right_ = {0, 1, 0}, up_ = {1, 0, 0});
       return;
     }
-    right_ = cross(Vec3{0, 0, 1}, normal_);
+    right_ = cross(std::abs(normal_.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal_);
     right_ = (1 / length(right_)) * right_;
     up_ = cross(normal_, right_);
   }

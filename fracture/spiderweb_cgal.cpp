@@ -81,14 +81,19 @@ class WebTriangulation {
     }
   }
 
+  // All end points first: what lies exactly on the boundary must split it before cracks that cross
+  // it bend it by their rounded crossings.
   void insert_cracks(const CrackWeb& web) {
+    std::vector<std::pair<Vertex, Vertex>> ends;
     Face hint;
     for (const CrackWeb::Segment& crack : web.cracks) {
       const Vertex a = cdt_.insert(as_point(crack.a), hint);
       const Vertex b = cdt_.insert(as_point(crack.b), a->face());
-      if (a != b) cdt_.insert_constraint(a, b);
+      ends.emplace_back(a, b);
       hint = b->face();
     }
+    for (const auto& [a, b] : ends)
+      if (a != b) cdt_.insert_constraint(a, b);
   }
 
   void insert_points(const RestPoints& points) {
@@ -267,7 +272,8 @@ Pattern spiderweb(const LatticeRegion& region, const SpiderwebParams& params, st
   if (stats) *stats = counters;
   const double unit = std::max(region.lattice.step.x, region.lattice.step.y);
   return gather(triangulation.triangles(web), {.cell_area = params.rest_cell * params.rest_cell,
-                                               .least_width = kLeastWidth * unit});
+                                               .least_width = kLeastWidth * unit,
+                                               .least_edge = unit});
 }
 
 }  // namespace sunder

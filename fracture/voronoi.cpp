@@ -22,7 +22,13 @@ struct Edge {
 struct Findings {
   std::vector<Edge> ties;
   std::vector<std::uint32_t> wrong;
+  std::vector<std::uint32_t> brief;  // cells with an edge so short that its ends may coincide
 };
+
+template <class Value>
+void append(std::vector<Value>& to, const std::vector<Value>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
 
 bool suits_kernels(const Sites& sites) {
   const double aspect = static_cast<double>(sites.cell_width) / sites.cell_height;
@@ -121,19 +127,21 @@ Findings certify_all(const Stars& stars, const Sites& sites, int threads) {
   std::vector<Findings> found(static_cast<std::size_t>(std::max(1, threads)));
   in_bands(threads, stars.cell_count(), [&](int band, std::int64_t begin, std::int64_t end) {
     Findings& mine = found[static_cast<std::size_t>(band)];
-    Star ties;
+    CloseEdges close;
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
-      const Verdict verdict = certify(sites, stars, cell, stars.is_list(cell), ties);
+      const Verdict verdict = certify(sites, stars, cell, stars.is_list(cell), close);
       if (verdict == Verdict::good) continue;
       if (verdict == Verdict::wrong) mine.wrong.push_back(cell);
-      else
-        for (const std::int32_t neighbour : ties) mine.ties.push_back({cell, neighbour});
-      ties.clear();
+      else if (!close.brief.empty()) mine.brief.push_back(cell);
+      if (verdict == Verdict::close)
+        for (const std::int32_t neighbour : close.ties) mine.ties.push_back({cell, neighbour});
+      close = {};
     }
   });
   for (std::size_t band = 1; band < found.size(); ++band) {
-    found[0].ties.insert(found[0].ties.end(), found[band].ties.begin(), found[band].ties.end());
-    found[0].wrong.insert(found[0].wrong.end(), found[band].wrong.begin(), found[band].wrong.end());
+    append(found[0].ties, found[band].ties);
+    append(found[0].wrong, found[band].wrong);
+    append(found[0].brief, found[band].brief);
   }
   return std::move(found[0]);
 }
@@ -171,9 +179,8 @@ class Repair {
     return !exact_.empty() &&
            std::ranges::all_of(cells, [&](std::uint32_t cell) { return exact_[cell]; });
   }
-  std::uint64_t exact_count() const {
-    return static_cast<std::uint64_t>(std::ranges::count(exact_, true));
-  }
+  /// The cells that were made exact.
+  const std::vector<std::uint32_t>& exact_cells() const { return exact_cells_; }
 
  private:
   void suspect_neighbours(std::uint32_t cell) {
@@ -187,6 +194,7 @@ class Repair {
     suspect_neighbours(cell);
     stars_.assign(cell, clip_cell_exactly(sites_, buckets_, cell));
     exact_[cell] = true;
+    exact_cells_.push_back(cell);
     suspect_neighbours(cell);
   }
 
@@ -198,8 +206,9 @@ class Repair {
   // A cell that is not exact yet and does not hold against itself and its neighbours.
   bool contradicts(std::uint32_t cell) const {
     if (exact_[cell]) return false;
-    Star ties;
-    if (certify(sites_, stars_, cell, true, ties) != Verdict::good) return true;
+    CloseEdges close;
+    if (certify(sites_, stars_, cell, true, close) == Verdict::wrong || !close.ties.empty())
+      return true;
     std::int32_t buffer[8];
     for (const std::int32_t neighbour : stars_.star(cell, buffer))
       if (neighbour >= 0 && !lists(static_cast<std::uint32_t>(neighbour), cell)) return true;
@@ -210,6 +219,7 @@ class Repair {
   const Sites& sites_;
   const Buckets& buckets_;
   std::vector<bool> exact_;
+  std::vector<std::uint32_t> exact_cells_;
   std::vector<std::uint32_t> suspects_;
 };
 
@@ -275,8 +285,10 @@ Pattern voronoi(const Sites& sites, VoronoiParams params, VoronoiStats* stats) {
     repair.run(std::move(shared.wrong));
     shared = share_vertices(sites, stars, threads);
   }
+  append(found.brief, repair.exact_cells());
+  shared.merged += drop_vanished_edges(shared.pattern, found.brief);
   if (stats != nullptr) {
-    const std::uint64_t exact = repair.exact_count();
+    const std::uint64_t exact = repair.exact_cells().size();
     *stats = {stars.cell_count() - exact, exact, shared.merged, avx2 && suits_kernels(sites)};
   }
   return std::move(shared.pattern);

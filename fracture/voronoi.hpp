@@ -31,8 +31,9 @@ struct VoronoiStats {
 /// The topology is exactly that of the lattice sites (ties included: where four or more cells meet
 /// there is one vertex), certified or computed in exact arithmetic. Vertex coordinates are one pure
 /// function of the generators that define them, error below 1e-13 of a cell, computed once. Cells
-/// are strictly convex; border edges are 0 bottom, 1 right, 2 top, 3 left. A cell's corners start
-/// at an unspecified but deterministic corner; the bytes do not depend on kernel or threads.
+/// are strictly convex; an edge whose ends round to the same coordinates (possible only next to a
+/// tie) is dropped like a tie. Border edges are 0 bottom, 1 right, 2 top, 3 left. A cell's corners
+/// start with its smallest `across`; the bytes do not depend on kernel or threads.
 /// Expected O(n). Method: ring search to the security radius (Rycroft 2009), 128-bit certificate.
 Pattern voronoi(const Sites& sites, VoronoiParams params = {}, VoronoiStats* stats = nullptr);
 

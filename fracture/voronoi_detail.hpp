@@ -61,11 +61,14 @@ Star clip_cell_fast(const Sites& sites, const Buckets& buckets, std::uint32_t ce
 Star clip_cell_exactly(const Sites& sites, const Buckets& buckets, std::uint32_t cell);
 
 /// What the certificate says of one star, decided exactly: `wrong` if a corner does not turn left or
-/// an edge has a negative length; `tied` if an edge has length 0, and `ties` gets its neighbours.
-/// Only edges to later sites (and the box) are measured unless `all_edges`.
-enum class Verdict { good, tied, wrong };
+/// an edge has a negative length; `close` if edges have length 0, or next to it: their neighbours are
+/// in `ties` and `brief`. Only edges to later sites (and the box) are measured unless `all_edges`.
+enum class Verdict { good, close, wrong };
+struct CloseEdges {
+  Star ties, brief;
+};
 Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool all_edges,
-                Star& ties);
+                CloseEdges& close);
 
 /// Stars as a pattern: vertices found once, by the smallest cell that meets there, and shared. Where a
 /// vertex does not close the stars contradict each other: then `wrong` gets the cells around it and
@@ -76,6 +79,10 @@ struct Shared {
   std::uint64_t merged = 0;
 };
 Shared share_vertices(const Sites& sites, const Stars& stars, int threads);
+
+/// Makes one vertex of both ends of each edge of these cells that has no length in coordinates.
+/// Returns how many edges vanished.
+std::uint64_t drop_vanished_edges(Pattern& pattern, std::span<const std::uint32_t> cells);
 
 /// True when a site is exactly as far from the point where the generators meet as the generators
 /// are: three sites, two sites and a side, or a site and two sides (~side).

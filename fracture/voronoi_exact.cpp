@@ -232,7 +232,10 @@ std::vector<std::int32_t> exact_cell(const Sites& sites, std::uint32_t site) {
 }
 
 Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool all_edges,
-                Star& ties) {
+                CloseEdges& close) {
+  // An edge of usual length measures 2^80 on a grid of the finest lattice; below 2^62 it is looked at
+  // again once its ends have coordinates.
+  constexpr Int128 kBrief = Int128{1} << 62;
   std::int32_t buffer[8];
   const std::span<const std::int32_t> star = stars.star(cell, buffer);
   const std::size_t size = star.size();
@@ -252,8 +255,11 @@ Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool
       const Int128 length = static_cast<Int128>(before.c) * exit -
                             static_cast<Int128>(line.c) * turn(before, after) +
                             static_cast<Int128>(after.c) * entry;
-      if (length < 0) return Verdict::wrong;
-      if (length == 0) verdict = Verdict::tied, ties.push_back(star[k]);
+      if (length < kBrief) {
+        if (length < 0) return Verdict::wrong;
+        (length == 0 ? close.ties : close.brief).push_back(star[k]);
+        verdict = Verdict::close;
+      }
     }
     before = line, line = after, entry = exit;
   }

@@ -202,9 +202,69 @@ void write_stars(Pattern& pattern, const Stars& stars, int threads) {
   });
 }
 
-// Corners hold vertices numbered within the band that owns them: bands follow one another, so a
-// corner's band is known once every corner knows it. Here each band rewrites what it wrote.
+// Smallest vertex that coincides with each vertex.
+class Coincidence {
+ public:
+  explicit Coincidence(std::size_t count) : parent_(count) {
+    for (std::uint32_t v = 0; v < count; ++v) parent_[v] = v;
+  }
+  std::uint32_t first(std::uint32_t v) const {
+    while (parent_[v] != v) v = parent_[v];
+    return v;
+  }
+  void join(std::uint32_t v, std::uint32_t w) {
+    v = first(v), w = first(w);
+    parent_[std::max(v, w)] = std::min(v, w);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+void rebuild(Pattern& pattern, const Coincidence& coincidence) {
+  Pattern whole;
+  std::vector<std::uint32_t> number(pattern.vertices.size(), kNone);
+  for (std::uint32_t v = 0; v < pattern.vertices.size(); ++v) {
+    if (coincidence.first(v) != v) continue;
+    number[v] = static_cast<std::uint32_t>(whole.vertices.size());
+    whole.vertices.push_back(pattern.vertices[v]);
+  }
+  for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell) {
+    const LoopRange loop{pattern.cell_begin[cell], pattern.cell_begin[cell + 1]};
+    for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
+      const std::uint32_t start = coincidence.first(pattern.corners[k]);
+      if (start == coincidence.first(pattern.corners[loop.next(k)])) continue;
+      whole.corners.push_back(number[start]);
+      whole.across.push_back(pattern.across[k]);
+    }
+    whole.cell_begin.push_back(static_cast<std::uint32_t>(whole.corners.size()));
+  }
+  pattern = std::move(whole);
+}
+
 }  // namespace
+
+std::uint64_t drop_vanished_edges(Pattern& pattern, std::span<const std::uint32_t> cells) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> vanished;
+  for (const std::uint32_t cell : cells) {
+    const LoopRange loop{pattern.cell_begin[cell], pattern.cell_begin[cell + 1]};
+    for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
+      const std::uint32_t start = pattern.corners[k], end = pattern.corners[loop.next(k)];
+      if (pattern.vertices[start] == pattern.vertices[end])
+        vanished.push_back({std::min(start, end), std::max(start, end)});
+    }
+  }
+  std::ranges::sort(vanished);
+  vanished.erase(std::unique(vanished.begin(), vanished.end()), vanished.end());
+  if (!vanished.empty()) {
+    Coincidence coincidence(pattern.vertices.size());
+    for (const auto& [start, end] : vanished) coincidence.join(start, end);
+    rebuild(pattern, coincidence);
+  }
+  pattern.all_convex = std::ranges::all_of(
+      cells, [&](std::uint32_t cell) { return is_strictly_convex(pattern, cell); });
+  return vanished.size();
+}
 
 Shared share_vertices(const Sites& sites, const Stars& stars, int threads) {
   Shared shared;
@@ -226,7 +286,6 @@ Shared share_vertices(const Sites& sites, const Stars& stars, int threads) {
   if (!closes && shared.wrong.empty())
     for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell) shared.wrong.push_back(cell);
   shared.pattern.vertices = std::move(band.vertices);
-  shared.pattern.all_convex = true;
   return shared;
 }
 

@@ -65,6 +65,28 @@ Quaternion rotation_from_degrees(Vec3 degrees) {
   return canonical(q);
 }
 
+Vec3 rotate(const Quaternion& rotation, Vec3 vector) {
+  const Vec3 axis{rotation.x, rotation.y, rotation.z};
+  const Vec3 twice = 2.0 * cross(axis, vector);
+  return vector + rotation.w * twice + cross(axis, twice);
+}
+
+Wall with_local_origin(Wall wall) {
+  if (wall.region.outline.empty()) return wall;
+  const Vec2 low = bounding_box(wall.region.outline).low;
+  if (low == Vec2{}) return wall;
+  const auto move = [&](std::vector<Vec2>& points) {
+    for (Vec2& p : points) p = p - low;
+  };
+  move(wall.region.outline);
+  for (Loop& opening : wall.region.openings) move(opening);
+  if (auto* sites = std::get_if<VoronoiSitesParams>(&wall.pattern)) move(sites->sites);
+  if (auto* focus = std::get_if<VoronoiFocusParams>(&wall.pattern)) move(focus->points);
+  if (auto* web = std::get_if<SpiderwebParams>(&wall.pattern)) move(web->impacts);
+  wall.position = wall.position + rotate(wall.rotation, {low.x, low.y, 0});
+  return wall;
+}
+
 template <>
 std::span<const Field<VoronoiGridParams>> fields() {
   using P = VoronoiGridParams;

@@ -60,9 +60,11 @@ struct Quaternion {
 /// Turns about the x, then the y, then the z axis (fixed axes), each in degrees; exact at multiples
 /// of 90°, the same bits on every machine.
 Quaternion rotation_from_degrees(Vec3 degrees);
+/// The vector turned by a unit quaternion.
+Vec3 rotate(const Quaternion& rotation, Vec3 vector);
 
-/// A wall as a scene describes it. It lies in its local XY plane, its region's coordinates as given,
-/// thickness along z centred on z = 0. SI units.
+/// A wall as a scene describes it. It lies in its local XY plane, thickness along z centred on z = 0.
+/// SI units.
 struct Wall {
   std::string name = "wall";
   Region region{rectangle({6, 3}), {}};
@@ -78,6 +80,10 @@ struct Wall {
   /// A file that `sunder fracture` wrote, instead of outline and pattern; empty: none.
   std::string asset;
 };
+
+/// The same wall in the same place with its local origin at the lower left of its outline's bounding
+/// box: what is far from a polygon's origin keeps its digits in float32 files.
+Wall with_local_origin(Wall wall);
 
 template <> std::span<const Field<VoronoiGridParams>> fields();
 template <> std::span<const Field<VoronoiSitesParams>> fields();

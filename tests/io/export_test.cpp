@@ -268,23 +268,22 @@ TEST(Export, ChunksWithTheSameCornersShareTheirIndices) {
 }
 
 TEST(Export, LargeChunksGetWideIndices) {
-  // A strip of 40,000 corners has more than 65,535 vertices.
   Asset asset;
-  WallAsset wall = sample_wall("long", 1, 1);
-  Pattern p;
-  constexpr std::uint32_t kHalf = 20000;
-  for (std::uint32_t i = 0; i <= kHalf; ++i) p.vertices.push_back({i * 1e-3, 0});
-  for (std::uint32_t i = 0; i <= kHalf; ++i) p.vertices.push_back({(kHalf - i) * 1e-3, 1});
-  for (std::uint32_t i = 0; i < p.vertices.size(); ++i) {
-    p.corners.push_back(i);
-    p.across.push_back(Across::border(i == kHalf ? 1 : i < kHalf ? 0 : i <= 2 * kHalf ? 2 : 3));
+  asset.walls.push_back(sample_wall("large", 1, 1));
+  MeshedAsset meshed = mesh_asset(asset);
+  RenderMeshes m;
+  constexpr std::uint32_t kCount = 70000;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    m.positions.insert(m.positions.end(), {static_cast<float>(i), static_cast<float>(i % 7), 0});
+    m.normals.insert(m.normals.end(), {0, 0, 1});
+    m.uvs.insert(m.uvs.end(), {0, 0});
+    if (i >= 2) m.indices.insert(m.indices.end(), {0, i - 1, i});
   }
-  p.cell_begin.push_back(static_cast<std::uint32_t>(p.corners.size()));
-  wall.pattern = p;
-  wall.bonds.clear();
-  asset.walls.push_back(wall);
-  const MeshedAsset meshed = mesh_asset(asset);
-  ASSERT_GT(meshed.meshes[0].vertex_begin[1], 65535u);
+  m.vertex_begin = {0, kCount};
+  m.lists = {{0, static_cast<std::uint32_t>(m.indices.size())}};
+  m.outer = {0};
+  m.inner = {RenderMeshes::kNoList};
+  meshed.meshes[0] = m;
   const TestFolder folder;
   export_asset(meshed, folder / "a.glb");
   EXPECT_NE(content_of(folder / "a.glb").find("\"componentType\":5125,\"count\""),
