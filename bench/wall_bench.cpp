@@ -1,1 +1,133 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What a wall costs from seed to file, per chunk, and what one hit costs. One process per size, so
+// that the peak memory is that size's own. Usage: bench_wall [folder for the files] [sizes…]
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fracture/breaking.hpp"
+#include "fracture/chunk_mesh.hpp"
+#include "fracture/measure.hpp"
+#include "io/export.hpp"
+#include "meshing/random.hpp"
+
+namespace {
+
+using namespace sunder;
+using Clock = std::chrono::steady_clock;
+
+template <class Work>
+double seconds(Work work) {
+  const auto start = Clock::now();
+  work();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class Work>
+double least_seconds(int runs, Work work) {
+  double least = 1e300;
+  for (int i = 0; i < runs; ++i) least = std::min(least, seconds(work));
+  return least;
+}
+
+Wall square_wall(double cells) {
+  const double side = std::sqrt(cells);
+  Wall wall;
+  wall.region.outline = rectangle({side, side});
+  wall.pattern = VoronoiGridParams{1, 1};
+  wall.thickness = 0.5;
+  return wall;
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+// The corners of the faces a change shows, as a renderer would be handed them.
+double emit_faces(const Pattern& pattern, const BreakableWall::Change& change,
+                  std::vector<float>& out) {
+  out.clear();
+  for (const std::uint32_t k : change.shown)
+    for (const float z : {-0.25f, 0.25f}) {
+      const Vec2 p = pattern.vertices[pattern.corners[k]];
+      out.insert(out.end(), {static_cast<float>(p.x), static_cast<float>(p.y), z});
+    }
+  return out.empty() ? 0 : out[0];
+}
+
+void bench_size(double cells, const std::filesystem::path& folder) {
+  const Wall wall = square_wall(cells);
+  const int runs = cells <= 1e4 ? 15 : cells <= 1e5 ? 7 : 3;
+  Asset asset;
+  asset.walls.resize(1);
+  const FractureParams one{.seed = 1, .threads = 1};
+  const double pattern = least_seconds(runs, [&] { make_pattern(wall, one); });
+  const double whole = least_seconds(runs, [&] { asset.walls[0] = fracture_wall(wall, 2400, one); });
+  const double mesh = least_seconds(runs, [&] { render_meshes(asset.walls[0], 1); });
+  const MeshedAsset meshed = mesh_asset(asset, 1);
+  const auto file = folder / "bench.glb";
+  const double write = least_seconds(runs, [&] { export_asset(meshed, file); });
+  const double end_to_end = least_seconds(runs, [&] {
+    Asset fresh;
+    fresh.walls.push_back(fracture_wall(wall, 2400, one));
+    export_asset(mesh_asset(fresh, 1), file);
+  });
+  const auto size = static_cast<double>(std::filesystem::file_size(file));
+  std::filesystem::remove(file);
+
+  const Pattern& p = asset.walls[0].pattern;
+  BreakableWall state(p);
+  std::vector<float> buffer;
+  double sum = 0;
+  const int hits = static_cast<int>(std::min(2000.0, cells / 4));
+  const double hit = seconds([&] {
+    for (int i = 0; i < hits; ++i) {
+      const auto cell = static_cast<std::uint32_t>(random_bits(5, static_cast<std::uint64_t>(i)) %
+                                                   p.cell_count());
+      sum += emit_faces(p, state.break_cells(std::span(&cell, 1)), buffer);
+    }
+  }) / hits;
+  const double count = p.cell_count();
+  const auto ns = [&](double s) { return 1e9 * s / count; };
+  std::printf("| %.0e | %.0f | %.0f | %.0f | %.0f | %.0f | %.1f | %.0f | %.0f | %.2f | %.1e |\n", cells,
+              ns(pattern), ns(whole - pattern), ns(mesh), ns(whole + mesh), ns(write),
+              1e3 * end_to_end, size / count, peak_megabytes(), 1e6 * hit,
+              (whole + mesh) / hit + 0 * sum);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::filesystem::path folder =
+      argc > 1 ? std::filesystem::path(argv[1]) : std::filesystem::temp_directory_path();
+  std::vector<double> sizes;
+  for (int i = 2; i < argc; ++i) sizes.push_back(std::strtod(argv[i], nullptr));
+  if (sizes.empty()) sizes = {1e2, 1e3, 1e4, 1e5, 1e6};
+  std::printf("| chunks | pattern ns | mass + bonds ns | meshes ns | in memory ns | GLB ns | "
+              "seed to file ms | bytes | peak MB | one hit us | rebuild / hit |\n"
+              "|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::fflush(stdout);
+  for (const double cells : sizes) {
+    const pid_t child = fork();
+    if (child == 0) {
+      bench_size(cells, folder);
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (status != 0) return 1;
+  }
+  return 0;
+}

@@ -50,7 +50,7 @@ using Progress = std::function<void(double)>;
 struct FractureParams {
   std::uint64_t seed = 1;
   int threads = 1;
-  Progress progress;
+  Progress progress = {};
 };
 
 /// A wall's pattern and the region it fills.

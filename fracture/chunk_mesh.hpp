@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fracture/asset.hpp"
+#include "meshing/raw_vector.hpp"
 #include "meshing/tri_mesh.hpp"
 
 namespace sunder {
@@ -40,9 +41,9 @@ struct IndexList {
 /// coordinates in metres, v up: wall coordinates outside; along the crack and through the thickness
 /// inside.
 struct RenderMeshes {
-  std::vector<float> positions;  ///< 3 per vertex
-  std::vector<float> normals;    ///< 3 per vertex, unit
-  std::vector<float> uvs;        ///< 2 per vertex
+  RawVector<float> positions;  ///< 3 per vertex
+  RawVector<float> normals;    ///< 3 per vertex, unit
+  RawVector<float> uvs;        ///< 2 per vertex
   std::vector<std::uint32_t> vertex_begin{0};
   std::vector<std::uint32_t> indices;
   std::vector<IndexList> lists;          ///< distinct index lists, in order of first use

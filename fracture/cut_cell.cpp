@@ -325,10 +325,13 @@ class CellCutter {
 
   // Only loops that float inside the cell can be clockwise; all their nodes are corners.
   bool is_clockwise(const std::vector<std::uint32_t>& loop) const {
+    const auto is_corner = [&](std::uint32_t h) {
+      return nodes_[half_edges_[h].from].key.kind == NodeKey::corner;
+    };
+    if (!std::ranges::all_of(loop, is_corner)) return false;
     Int128 twice_area = 0;
     for (const std::uint32_t h : loop) {
       const HalfEdge& e = half_edges_[h];
-      if (nodes_[e.from].key.kind != NodeKey::corner) return false;
       twice_area += cross(relative(nodes_[e.from].key.ids[0]), relative(nodes_[e.to].key.ids[0]));
     }
     return twice_area < 0;

@@ -156,7 +156,7 @@ class Gatherer {
       if (a.is_damaged != b.is_damaged) continue;
       if (!a.is_damaged && area > kLargest * params_.cell_area) continue;
       const double roundness = perimeter * perimeter / (16 * area);  // 1 for a square
-      const double cost = roundness + area / params_.cell_area;
+      const double cost = 2 * roundness + area / params_.cell_area;
       queue.push({cost, cell, contact.cell, a.version, b.version});
     }
   }

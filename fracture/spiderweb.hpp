@@ -39,7 +39,8 @@ struct SpiderwebStats {
 /// constrained Delaunay triangulation against border and openings, gathered into cells of about
 /// `rest_cell`. Every vertex and edge is carried from that one triangulation (CGAL, exact
 /// predicates), so neighbours share vertices by construction.
-/// Throws Error{geometry} when an impact lies outside the region.
+/// Throws Error{geometry} when an impact lies outside the region or the radii are below what its
+/// lattice resolves, Error{input} when parameters contradict each other.
 Pattern spiderweb(const LatticeRegion& region, const SpiderwebParams& params, std::uint64_t seed,
                   SpiderwebStats* stats = nullptr);
 

@@ -73,6 +73,8 @@ PaddedSites pad(const Sites& sites) {
     }
   }
   grid.x = padded.x.data(), grid.y = padded.y.data();
+  const auto side = static_cast<float>(std::min(sites.cell_width, sites.cell_height));
+  grid.far = 4 * side * side;
   return padded;
 }
 
@@ -107,10 +109,14 @@ void unfold_border(Stars& stars, const Sites& sites) {
   }
 }
 
-void propose(Stars& stars, const Sites& sites, const Buckets& buckets, bool avx2, int threads) {
+// Proposes every cell. Returns those that a kernel left open, and that its other cells may therefore
+// not agree with.
+std::vector<std::uint32_t> propose(Stars& stars, const Sites& sites, const Buckets& buckets,
+                                   bool avx2, int threads) {
+  std::vector<std::uint32_t> open;
   if (suits_kernels(sites)) {
     const PaddedSites padded = pad(sites);
-    in_bands(threads, sites.rows, [&](int, std::int64_t begin, std::int64_t end) {
+    in_bands(threads, sites.rows, stars.cell_count(), [&](int, std::int64_t begin, std::int64_t end) {
       std::vector<StarWord> scratch(static_cast<std::size_t>(kScratchRows) *
                                     static_cast<std::size_t>(padded.grid.stride));
       (avx2 ? propose_avx2 : propose_portable)(
@@ -119,23 +125,63 @@ void propose(Stars& stars, const Sites& sites, const Buckets& buckets, bool avx2
     });
     unfold_border(stars, sites);
   }
-  for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell)
-    if (stars.words[cell] == 0) stars.assign(cell, clip_cell_fast(sites, buckets, cell));
+  for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell) {
+    if (stars.words[cell] != 0) continue;
+    stars.assign(cell, clip_cell_fast(sites, buckets, cell));
+    if (suits_kernels(sites)) open.push_back(cell);
+  }
+  return open;
 }
 
-Findings certify_all(const Stars& stars, const Sites& sites, int threads) {
+bool lists(const Stars& stars, std::uint32_t cell, std::uint32_t other) {
+  std::int32_t buffer[8];
+  return std::ranges::count(stars.star(cell, buffer), static_cast<std::int32_t>(other)) == 1;
+}
+
+// The cells, and their neighbours, where one lists the other but not the other way round.
+std::vector<std::uint32_t> one_sided(const Stars& stars, std::span<const std::uint32_t> cells) {
+  std::vector<std::uint32_t> result;
+  for (const std::uint32_t cell : cells) {
+    std::int32_t buffer[8];
+    for (const std::int32_t neighbour : stars.star(cell, buffer)) {
+      const auto other = static_cast<std::uint32_t>(neighbour);
+      if (neighbour >= 0 && !lists(stars, other, cell)) result.insert(result.end(), {cell, other});
+    }
+  }
+  return result;
+}
+
+// The cells of a band that a closer look must decide.
+std::vector<std::uint32_t> doubtful_band(const Stars& stars, const Sites& sites, bool avx2,
+                                         std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t kBlock = 4096;  // keeps the list of candidates in the cache
+  std::uint32_t block[kBlock];
+  std::vector<std::uint32_t> doubtful;
+  static_assert(sizeof(Site) == 2 * sizeof(std::int32_t));
+  const auto* xy = &sites.points.data()->x;
+  for (std::int64_t at = begin; at < end; at += kBlock) {
+    const auto first = static_cast<std::uint32_t>(at);
+    const auto last = static_cast<std::uint32_t>(std::min(end, at + kBlock));
+    const std::uint32_t count =
+        avx2 ? doubtful_cells_avx2(stars.words.data(), xy, sites.columns, first, last, block)
+             : doubtful_cells(sites, stars, first, last, block);
+    doubtful.insert(doubtful.end(), block, block + count);
+  }
+  return doubtful;
+}
+
+Findings certify_all(const Stars& stars, const Sites& sites, bool avx2, int threads) {
   std::vector<Findings> found(static_cast<std::size_t>(std::max(1, threads)));
-  in_bands(threads, stars.cell_count(), [&](int band, std::int64_t begin, std::int64_t end) {
+  in_bands(threads, stars.cell_count(), stars.cell_count(), [&](int band, std::int64_t begin, std::int64_t end) {
     Findings& mine = found[static_cast<std::size_t>(band)];
-    CloseEdges close;
-    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
+    for (const std::uint32_t cell : doubtful_band(stars, sites, avx2, begin, end)) {
+      CloseEdges close;
       const Verdict verdict = certify(sites, stars, cell, stars.is_list(cell), close);
       if (verdict == Verdict::good) continue;
       if (verdict == Verdict::wrong) mine.wrong.push_back(cell);
       else if (!close.brief.empty()) mine.brief.push_back(cell);
       if (verdict == Verdict::close)
         for (const std::int32_t neighbour : close.ties) mine.ties.push_back({cell, neighbour});
-      close = {};
     }
   });
   for (std::size_t band = 1; band < found.size(); ++band) {
@@ -167,11 +213,14 @@ class Repair {
     while (!wrong.empty()) {
       suspects_.clear();
       for (const std::uint32_t cell : wrong) make_exact(cell);
+      unlisted_ = one_sided(stars_, wrong);
+      std::erase_if(unlisted_, [&](std::uint32_t cell) { return exact_[cell]; });
       std::ranges::sort(suspects_);
       suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
       wrong.clear();
       std::ranges::copy_if(suspects_, std::back_inserter(wrong),
                            [&](std::uint32_t cell) { return contradicts(cell); });
+      append(wrong, unlisted_);
     }
   }
 
@@ -198,21 +247,32 @@ class Repair {
     suspect_neighbours(cell);
   }
 
-  bool lists(std::uint32_t cell, std::uint32_t other) const {
-    std::int32_t buffer[8];
-    return std::ranges::count(stars_.star(cell, buffer), static_cast<std::int32_t>(other)) == 1;
-  }
-
-  // A cell that is not exact yet and does not hold against itself and its neighbours.
+  // A cell that is not exact yet and does not hold by itself or against its neighbours.
   bool contradicts(std::uint32_t cell) const {
     if (exact_[cell]) return false;
     CloseEdges close;
     if (certify(sites_, stars_, cell, true, close) == Verdict::wrong || !close.ties.empty())
       return true;
     std::int32_t buffer[8];
-    for (const std::int32_t neighbour : stars_.star(cell, buffer))
-      if (neighbour >= 0 && !lists(static_cast<std::uint32_t>(neighbour), cell)) return true;
+    const std::span<const std::int32_t> star = stars_.star(cell, buffer);
+    for (std::size_t k = 0; k < star.size(); ++k)
+      if (!closes(cell, star[k == 0 ? star.size() - 1 : k - 1], star[k])) return true;
     return false;
+  }
+
+  // Whether neighbour a, which comes before b around the cell, sees the same corner.
+  bool closes(std::uint32_t cell, std::int32_t a, std::int32_t b) const {
+    if (a < 0) return true;
+    std::int32_t buffer[8];
+    const std::span<const std::int32_t> star =
+        stars_.star(static_cast<std::uint32_t>(a), buffer);
+    const auto place = std::ranges::find(star, static_cast<std::int32_t>(cell));
+    if (place == star.end()) return false;
+    const std::int32_t next = place == star.begin() ? star.back() : *(place - 1);
+    if (next == b) return true;
+    if (next < 0 || next == a) return false;
+    const std::int32_t generators[3] = {static_cast<std::int32_t>(cell), a, b};
+    return meets(sites_, generators, static_cast<std::uint32_t>(next));
   }
 
   Stars& stars_;
@@ -220,27 +280,23 @@ class Repair {
   const Buckets& buckets_;
   std::vector<bool> exact_;
   std::vector<std::uint32_t> exact_cells_;
-  std::vector<std::uint32_t> suspects_;
+  std::vector<std::uint32_t> suspects_, unlisted_;
 };
 
 }  // namespace
 
-Stars::Stars(const Sites& sites)
-    : columns(std::max(1, sites.columns)), words(sites.points.size(), 0) {}
+Stars::Stars(const Sites& sites) : words(sites.points.size(), 0) {
+  for (StarCode code = 0; code < 256; ++code)
+    offset[code] = rows_away(code) * sites.columns + columns_away(code);
+}
 
 std::span<const std::int32_t> Stars::star(std::uint32_t cell, std::int32_t (&buffer)[8]) const {
   const StarWord word = words[cell];
   if (is_list(cell)) return {pool.data() + (word & 0xFFFFFFFFu), (word >> 32) & 0xFFFFFFu};
   const int count = star_size(word);
   for (int k = 0; k < count; ++k)
-    buffer[k] = static_cast<std::int32_t>(cell) + rows_away(star_code(word, k)) * columns +
-                columns_away(star_code(word, k));
+    buffer[k] = static_cast<std::int32_t>(cell) + offset[star_code(word, k)];
   return {buffer, static_cast<std::size_t>(count)};
-}
-
-std::uint32_t Stars::size(std::uint32_t cell) const {
-  return is_list(cell) ? static_cast<std::uint32_t>(words[cell] >> 32 & 0xFFFFFFu)
-                       : static_cast<std::uint32_t>(star_size(words[cell]));
 }
 
 void Stars::assign(std::uint32_t cell, std::span<const std::int32_t> star) {
@@ -274,9 +330,10 @@ Pattern voronoi(const Sites& sites, VoronoiParams params, VoronoiStats* stats) {
   const int threads = std::max(1, params.threads);
   const Buckets buckets(sites);
   Stars stars(sites);
-  propose(stars, sites, buckets, avx2, threads);
-  Findings found = certify_all(stars, sites, threads);
+  const std::vector<std::uint32_t> open = propose(stars, sites, buckets, avx2, threads);
+  Findings found = certify_all(stars, sites, avx2 && suits_kernels(sites), threads);
   drop_ties(stars, found.ties);
+  append(found.wrong, one_sided(stars, open));
   Repair repair(stars, sites, buckets);
   repair.run(std::move(found.wrong));
   Shared shared = share_vertices(sites, stars, threads);

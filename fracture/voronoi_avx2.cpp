@@ -8,41 +8,36 @@
 namespace sunder {
 namespace {
 
-constexpr float kNever = 1e30f;
-
-// The candidates in two registers of eight and one of four.
+// The candidates in three registers of eight.
 class Pivot {
  public:
+  struct Tag {};
+  static Tag tag() { return {}; }
+
   explicit Pivot(const PaddedSite& site) : site_(site) {
-    gather(site.grid->x + site.index, x_, x_last_);
-    gather(site.grid->y + site.index, y_, y_last_);
-    for (int v = 0; v < 2; ++v)
+    gather(site.grid->x + site.index, x_);
+    gather(site.grid->y + site.index, y_);
+    for (int v = 0; v < 3; ++v)
       square_[v] = _mm256_add_ps(_mm256_mul_ps(x_[v], x_[v]), _mm256_mul_ps(y_[v], y_[v]));
-    square_last_ = _mm_add_ps(_mm_mul_ps(x_last_, x_last_), _mm_mul_ps(y_last_, y_last_));
   }
 
   StarCode next(StarCode from) const {
     const float fx = static_cast<float>(relative_x(site_, from));
     const float fy = static_cast<float>(relative_y(site_, from));
     const __m256 x = _mm256_set1_ps(fx), y = _mm256_set1_ps(fy);
-    const __m256 a = cotangent(x, y, 0), b = cotangent(x, y, 1);
-    const __m128 c = cotangent_last(_mm256_castps256_ps128(x), _mm256_castps256_ps128(y));
-    const __m256 ab = _mm256_min_ps(a, b);
-    __m128 low = _mm_min_ps(_mm256_castps256_ps128(ab), _mm256_extractf128_ps(ab, 1));
-    low = _mm_min_ps(low, c);
+    const __m256 a = cotangent(x, y, 0), b = cotangent(x, y, 1), c = cotangent(x, y, 2);
+    const __m256 abc = _mm256_min_ps(_mm256_min_ps(a, b), c);
+    __m128 low = _mm_min_ps(_mm256_castps256_ps128(abc), _mm256_extractf128_ps(abc, 1));
     low = _mm_min_ps(low, _mm_movehl_ps(low, low));
     low = _mm_min_ss(low, _mm_movehdup_ps(low));
     const float least = _mm_cvtss_f32(low);
     if (!(least < kNever)) return 0;
-    const float limit = least + static_cast<float>(kTie) * (1 + (least < 0 ? -least : least));
-    const __m256 limits = _mm256_set1_ps(limit);
-    const auto near_a = static_cast<unsigned>(
-        _mm256_movemask_ps(_mm256_cmp_ps(a, limits, _CMP_LE_OQ)));
-    const auto near_b = static_cast<unsigned>(
-        _mm256_movemask_ps(_mm256_cmp_ps(b, limits, _CMP_LE_OQ)));
-    const auto near_c = static_cast<unsigned>(
-        _mm_movemask_ps(_mm_cmple_ps(c, _mm256_castps256_ps128(limits))));
-    return leftmost(site_, near_a | near_b << 8 | near_c << 16);
+    const __m256 limits = _mm256_set1_ps(near_tie_limit(least));
+    const unsigned near = within(a, limits) | within(b, limits) << 8 | within(c, limits) << 16;
+    if ((near & (near - 1)) != 0) return best_of(site_, from, near);
+    const StarCode code = static_cast<StarCode>(_mm_cvtsi128_si32(_mm_castps_si128(low))) & 0xFFu;
+    const bool far = (fx * fx + fy * fy) * (1 + least * least) >= site_.grid->far;
+    return far ? better_afar(site_, from, code, Tag{}) : code;
   }
 
   static int first(StarWord word, int size) {
@@ -54,11 +49,15 @@ class Pivot {
   }
 
  private:
+  static unsigned within(__m256 values, __m256 limits) {
+    return static_cast<unsigned>(
+        _mm256_movemask_ps(_mm256_cmp_ps(values, limits, _CMP_LE_OQ)));
+  }
   static __m128i load(const std::int32_t* from) {
     return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
   }
 
-  void gather(const std::int32_t* here, __m256* out, __m128& last) {
+  void gather(const std::int32_t* here, __m256* out) {
     const std::int64_t stride = site_.grid->stride;
     const __m256i origin = _mm256_set1_epi32(*here);
     const auto keep = [&](__m128i low, __m128i high) {
@@ -66,9 +65,9 @@ class Pivot {
     };
     out[0] = keep(load(here - stride - 2), load(here - 1));
     out[1] = keep(load(here + stride - 2), load(here + 2 * stride - 2));
-    const __m128i places =
+    const __m128i ends =
         _mm_set_epi32(here[2 + 2 * stride], here[2 + stride], here[2 - stride], here[-2]);
-    last = _mm_cvtepi32_ps(_mm_sub_epi32(places, _mm256_castsi256_si128(origin)));
+    out[2] = keep(ends, load(here - 2 * stride - 2));
   }
 
   __m256 cotangent(__m256 x, __m256 y, int v) const {
@@ -76,23 +75,124 @@ class Pivot {
     const __m256 along = _mm256_add_ps(_mm256_mul_ps(x, x_[v]), _mm256_mul_ps(y, y_[v]));
     const __m256 value = _mm256_div_ps(_mm256_sub_ps(square_[v], along), left);
     const __m256 is_left = _mm256_cmp_ps(left, _mm256_setzero_ps(), _CMP_GT_OQ);
-    return _mm256_blendv_ps(_mm256_set1_ps(kNever), value, is_left);
-  }
-
-  __m128 cotangent_last(__m128 x, __m128 y) const {
-    const __m128 left = _mm_sub_ps(_mm_mul_ps(x, y_last_), _mm_mul_ps(y, x_last_));
-    const __m128 along = _mm_add_ps(_mm_mul_ps(x, x_last_), _mm_mul_ps(y, y_last_));
-    const __m128 value = _mm_div_ps(_mm_sub_ps(square_last_, along), left);
-    const __m128 is_left = _mm_cmpgt_ps(left, _mm_setzero_ps());
-    return _mm_blendv_ps(_mm_set1_ps(kNever), value, is_left);
+    const __m256i code =
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kCandidateCode + 8 * v));
+    const __m256 named = _mm256_or_ps(
+        _mm256_and_ps(value, _mm256_castsi256_ps(_mm256_set1_epi32(~0xFF))),
+        _mm256_castsi256_ps(code));
+    return _mm256_blendv_ps(_mm256_set1_ps(kNever), named, is_left);
   }
 
   PaddedSite site_;
-  __m256 x_[2], y_[2], square_[2];
-  __m128 x_last_, y_last_, square_last_;
+  __m256 x_[3], y_[3], square_[3];
 };
 
+// Lane k of row n: the lane before and after k around n lanes.
+struct Turns {
+  alignas(32) std::int32_t before[9][8], after[9][8];
+};
+constexpr Turns make_turns() {
+  Turns turns{};
+  for (int n = 0; n <= 8; ++n)
+    for (int k = 0; k < 8; ++k) {
+      turns.before[n][k] = k >= n ? k : k == 0 ? n - 1 : k - 1;
+      turns.after[n][k] = k >= n ? k : k + 1 == n ? 0 : k + 1;
+    }
+  return turns;
+}
+constexpr Turns kTurns = make_turns();
+
+struct Lines {
+  __m256d x, y;  // of four neighbours, relative to the site
+};
+__m256d turn(const Lines& p, const Lines& q) {
+  return _mm256_sub_pd(_mm256_mul_pd(p.x, q.y), _mm256_mul_pd(p.y, q.x));
+}
+__m256d square(const Lines& p) {
+  return _mm256_add_pd(_mm256_mul_pd(p.x, p.x), _mm256_mul_pd(p.y, p.y));
+}
+
+// Bits of the four lanes that hold: turns are exact; each of the three products of an edge's
+// determinant is below 2^92, so that its error is below 2^43.
+unsigned holds(const Lines& before, const Lines& line, const Lines& after) {
+  const __m256d entry = turn(before, line), exit = turn(line, after);
+  const __m256d length =
+      _mm256_add_pd(_mm256_sub_pd(_mm256_mul_pd(square(before), exit),
+                                  _mm256_mul_pd(square(line), turn(before, after))),
+                    _mm256_mul_pd(square(after), entry));
+  const __m256d left = _mm256_cmp_pd(entry, _mm256_setzero_pd(), _CMP_GT_OQ);
+  const __m256d is_long =
+      _mm256_cmp_pd(length, _mm256_set1_pd(kBriefEdge + 0x1p43), _CMP_GE_OQ);
+  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_and_pd(left, is_long)));
+}
+
+Lines low_lines(__m256i x, __m256i y) {
+  return {_mm256_cvtepi32_pd(_mm256_castsi256_si128(x)),
+          _mm256_cvtepi32_pd(_mm256_castsi256_si128(y))};
+}
+Lines high_lines(__m256i x, __m256i y) {
+  return {_mm256_cvtepi32_pd(_mm256_extracti128_si256(x, 1)),
+          _mm256_cvtepi32_pd(_mm256_extracti128_si256(y, 1))};
+}
+
+__m256i lanes_of(const std::int32_t (&row)[8]) {
+  return _mm256_load_si256(reinterpret_cast<const __m256i*>(row));
+}
+
+// The star's cells; lanes behind the last one name the cell itself.
+__m256i neighbours(StarWord word, int size, std::uint32_t cell, __m256i columns) {
+  const __m256i code =
+      _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(word)));
+  const __m256i eight = _mm256_set1_epi32(8);
+  const __m256i rows = _mm256_sub_epi32(_mm256_srli_epi32(code, 4), eight);
+  const __m256i side =
+      _mm256_sub_epi32(_mm256_and_si256(code, _mm256_set1_epi32(15)), eight);
+  const __m256i offset = _mm256_add_epi32(_mm256_mullo_epi32(rows, columns), side);
+  const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  const __m256i there = _mm256_cmpgt_epi32(_mm256_set1_epi32(size), lane);
+  return _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(cell)),
+                          _mm256_and_si256(offset, there));
+}
+
+bool surely_holds(StarWord word, const std::int32_t* xy, std::uint32_t cell, __m256i columns) {
+  const int size = star_size(word);
+  const __m256i cells = neighbours(word, size, cell, columns);
+  const auto* sites = reinterpret_cast<const long long*>(xy);
+  const __m256i low = _mm256_i32gather_epi64(sites, _mm256_castsi256_si128(cells), 8);
+  const __m256i high = _mm256_i32gather_epi64(sites, _mm256_extracti128_si256(cells, 1), 8);
+  const auto part = [&](__m256 mixed, std::int32_t origin) {
+    const __m256i sorted = _mm256_permute4x64_epi64(_mm256_castps_si256(mixed), 0xD8);
+    return _mm256_sub_epi32(sorted, _mm256_set1_epi32(origin));
+  };
+  const __m256 a = _mm256_castsi256_ps(low), b = _mm256_castsi256_ps(high);
+  const __m256i x = part(_mm256_shuffle_ps(a, b, 0x88), xy[2 * std::size_t{cell}]);
+  const __m256i y = part(_mm256_shuffle_ps(a, b, 0xDD), xy[2 * std::size_t{cell} + 1]);
+  const __m256i before = lanes_of(kTurns.before[size]), after = lanes_of(kTurns.after[size]);
+  const __m256i bx = _mm256_permutevar8x32_epi32(x, before);
+  const __m256i by = _mm256_permutevar8x32_epi32(y, before);
+  const __m256i ax = _mm256_permutevar8x32_epi32(x, after);
+  const __m256i ay = _mm256_permutevar8x32_epi32(y, after);
+  const unsigned held = holds(low_lines(bx, by), low_lines(x, y), low_lines(ax, ay)) |
+                        holds(high_lines(bx, by), high_lines(x, y), high_lines(ax, ay)) << 4;
+  const unsigned all = (1u << size) - 1;
+  return (held & all) == all;
+}
+
 }  // namespace
+
+std::uint32_t doubtful_cells_avx2(const StarWord* words, const std::int32_t* xy,
+                                  std::int32_t columns, std::uint32_t begin, std::uint32_t end,
+                                  std::uint32_t* doubtful) {
+  const __m256i width = _mm256_set1_epi32(columns);
+  std::uint32_t count = 0;
+  for (std::uint32_t cell = begin; cell < end; ++cell) {
+    const StarWord word = words[cell];
+    doubtful[count] = cell;
+    if (word >> 56 == 0xFF) ++count;
+    else count += !surely_holds(word, xy, cell, width);
+  }
+  return count;
+}
 
 bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"); }
 
@@ -108,6 +208,11 @@ void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t r
 namespace sunder {
 
 bool has_avx2() { return false; }
+
+std::uint32_t doubtful_cells_avx2(const StarWord*, const std::int32_t*, std::int32_t,
+                                  std::uint32_t, std::uint32_t, std::uint32_t*) {
+  return 0;
+}
 
 void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
                   StarWord* words, StarWord* scratch) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <thread>
@@ -27,13 +28,16 @@ class Stars {
   bool is_list(std::uint32_t cell) const { return words[cell] >> 56 == 0xFF; }
   /// The star as numbers; `buffer` holds it if it was a word.
   std::span<const std::int32_t> star(std::uint32_t cell, std::int32_t (&buffer)[8]) const;
-  std::uint32_t size(std::uint32_t cell) const;
+  std::uint32_t size(std::uint32_t cell) const {
+    return is_list(cell) ? static_cast<std::uint32_t>(words[cell] >> 32 & 0xFFFFFFu)
+                         : static_cast<std::uint32_t>(star_size(words[cell]));
+  }
   /// Replaces a star by a list, turned so that the smallest comes first.
   void assign(std::uint32_t cell, std::span<const std::int32_t> star);
   /// Removes one neighbour of a cell, if it is there.
   void remove(std::uint32_t cell, std::int32_t neighbour);
 
-  std::int32_t columns = 1;
+  std::array<std::int32_t, 256> offset{};  ///< from a cell to its neighbour, by code
   std::vector<StarWord> words;  ///< 0: not known yet; top byte 0xFF: a list, begin and size follow
   std::vector<std::int32_t> pool;
 };
@@ -70,6 +74,10 @@ struct CloseEdges {
 Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool all_edges,
                 CloseEdges& close);
 
+/// doubtful_cells_avx2 without AVX2, in integers.
+std::uint32_t doubtful_cells(const Sites& sites, const Stars& stars, std::uint32_t begin,
+                             std::uint32_t end, std::uint32_t* doubtful);
+
 /// Stars as a pattern: vertices found once, by the smallest cell that meets there, and shared. Where a
 /// vertex does not close the stars contradict each other: then `wrong` gets the cells around it and
 /// the pattern is unfinished. `merged` counts vertices where more cells meet than there must.
@@ -95,20 +103,25 @@ Vec2 place_of(const Sites& sites, const std::int32_t (&generators)[3]);
 /// The centre of the circle through the origin and two sites relative to it, |x|, |y| < 2^25, to
 /// the last digits even when the three nearly line up. Either order gives the same bits.
 inline Vec2 circle_centre(Vec2 p, Vec2 q) {
-  double near = dot(p, p), far = dot(q, q), twice = 2 * cross(p, q);
-  if (far < near) {
-    std::swap(p, q);
-    std::swap(near, far);
-    twice = -twice;
-  }
-  const double gap = far - near;
-  return {(near * (q.y - p.y) - gap * p.y) / twice, (gap * p.x - near * (q.x - p.x)) / twice};
+  // Without a branch: which one is nearer cannot be predicted.
+  const Vec2 sites[2] = {p, q};
+  const double squares[2] = {dot(p, p), dot(q, q)};
+  const int swap = squares[1] < squares[0];
+  const Vec2 near = sites[swap], far = sites[1 - swap];
+  const double square = squares[swap], gap = squares[1 - swap] - square;
+  const double scale = 1 / (2 * cross(near, far));
+  return {(square * (far.y - near.y) - gap * near.y) * scale,
+          (gap * near.x - square * (far.x - near.x)) * scale};
 }
 
-/// Calls work(band, begin, end) for bands of 0 … count, each on its own thread.
+/// Calls work(band, begin, end) for bands of 0 … count, each on its own thread; with fewer cells a
+/// thread costs more than it brings.
+constexpr std::int64_t kCellsForThread = 1024;
 template <class Work>
-void in_bands(int threads, std::int64_t count, Work work) {
-  const std::int64_t bands = std::clamp<std::int64_t>(threads, 1, std::max<std::int64_t>(1, count));
+void in_bands(int threads, std::int64_t count, std::int64_t cells, Work work) {
+  const std::int64_t bands =
+      std::clamp<std::int64_t>(std::min<std::int64_t>(threads, cells / kCellsForThread), 1,
+                               std::max<std::int64_t>(1, count));
   std::vector<std::thread> others;
   for (std::int64_t band = 1; band < bands; ++band)
     others.emplace_back(work, static_cast<int>(band), count * band / bands,

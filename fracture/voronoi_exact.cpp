@@ -32,6 +32,22 @@ LatticeLine line_to(const Sites& sites, std::uint32_t base, std::int32_t neighbo
                        : bisector(offset(sites, base, static_cast<std::uint32_t>(neighbour)));
 }
 
+// An edge of usual length measures 2^80 on the finest lattice, 2^20 less for each of the box's sides
+// next to it. One 2^18 times as short is looked at again once its ends have coordinates.
+constexpr auto kBrief = static_cast<Int128>(kBriefEdge);
+constexpr int kBrieferBySide = 20;  // log2
+
+// > 0 when the cell turns left from one edge to the next; exact.
+std::int64_t turn(const LatticeLine& p, const LatticeLine& q) { return p.a * q.b - q.a * p.b; }
+
+// Signed length of the edge on `line` from the one before to the one after, times factors above 0:
+// the determinant of the three lines. `entry` and `exit` are the turns at its ends. Exact.
+Int128 edge_length(const LatticeLine& before, const LatticeLine& line, const LatticeLine& after,
+                   std::int64_t entry, std::int64_t exit) {
+  return static_cast<Int128>(before.c) * exit - static_cast<Int128>(line.c) * turn(before, after) +
+         static_cast<Int128>(after.c) * entry;
+}
+
 struct Exact {
   using Line = LatticeLine;
   using Point = LatticeCrossing;
@@ -147,6 +163,30 @@ class Clipper {
   double reach_ = 0;
 };
 
+// Whether a star word holds with room to spare; every edge, as that is cheaper than choosing.
+bool surely_holds(const Sites& sites, const Stars& stars, std::uint32_t cell) {
+  const StarWord word = stars.words[cell];
+  const int size = star_size(word);
+  const Site site = sites.points[cell];
+  LatticeLine lines[10];  // the last, all, the first
+  for (int k = 0; k < size; ++k) {
+    const std::int64_t other = std::int64_t{cell} + stars.offset[star_code(word, k)];
+    const Site q = sites.points[static_cast<std::size_t>(other)];
+    lines[k + 1] = bisector({std::int64_t{q.x} - site.x, std::int64_t{q.y} - site.y});
+  }
+  lines[0] = lines[size];
+  lines[size + 1] = lines[1];
+  std::int64_t entry = turn(lines[0], lines[1]);
+  bool holds = size >= 3;
+  for (int k = 1; k <= size; ++k) {
+    const std::int64_t exit = turn(lines[k], lines[k + 1]);
+    holds &= entry > 0;
+    holds &= edge_length(lines[k - 1], lines[k], lines[k + 1], entry, exit) >= kBrief;
+    entry = exit;
+  }
+  return holds;
+}
+
 // Visits the buckets of ring r around bucket (i, j).
 template <class Visit>
 void visit_ring(const Buckets& buckets, std::int64_t i, std::int64_t j, std::int64_t r,
@@ -231,18 +271,22 @@ std::vector<std::int32_t> exact_cell(const Sites& sites, std::uint32_t site) {
   return clipper.star();
 }
 
+std::uint32_t doubtful_cells(const Sites& sites, const Stars& stars, std::uint32_t begin,
+                             std::uint32_t end, std::uint32_t* doubtful) {
+  std::uint32_t count = 0;
+  for (std::uint32_t cell = begin; cell < end; ++cell) {
+    doubtful[count] = cell;
+    count += stars.is_list(cell) || !surely_holds(sites, stars, cell);
+  }
+  return count;
+}
+
 Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool all_edges,
                 CloseEdges& close) {
-  // An edge of usual length measures 2^80 on a grid of the finest lattice; below 2^62 it is looked at
-  // again once its ends have coordinates.
-  constexpr Int128 kBrief = Int128{1} << 62;
   std::int32_t buffer[8];
   const std::span<const std::int32_t> star = stars.star(cell, buffer);
   const std::size_t size = star.size();
   if (size < 3) return Verdict::wrong;
-  const auto turn = [](const LatticeLine& p, const LatticeLine& q) {
-    return p.a * q.b - q.a * p.b;
-  };
   LatticeLine before = line_to(sites, cell, star[size - 1]);
   LatticeLine line = line_to(sites, cell, star[0]);
   std::int64_t entry = turn(before, line);
@@ -252,10 +296,10 @@ Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool
     const std::int64_t exit = turn(line, after);
     if (entry <= 0) return Verdict::wrong;
     if (all_edges || star[k] < 0 || star[k] > static_cast<std::int32_t>(cell)) {
-      const Int128 length = static_cast<Int128>(before.c) * exit -
-                            static_cast<Int128>(line.c) * turn(before, after) +
-                            static_cast<Int128>(after.c) * entry;
-      if (length < kBrief) {
+      const Int128 length = edge_length(before, line, after, entry, exit);
+      const int sides = (star[k == 0 ? size - 1 : k - 1] < 0) + (star[k] < 0) +
+                        (star[k + 1 == size ? 0 : k + 1] < 0);
+      if (length < kBrief >> (kBrieferBySide * sides)) {
         if (length < 0) return Verdict::wrong;
         (length == 0 ? close.ties : close.brief).push_back(star[k]);
         verdict = Verdict::close;

@@ -11,7 +11,6 @@ using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 constexpr int kVectors = kCandidates / 4;
-constexpr float kNever = 1e30f;
 
 Int4 load(const std::int32_t* from) {
   Int4 result;
@@ -19,8 +18,13 @@ Int4 load(const std::int32_t* from) {
   return result;
 }
 
+Float4 lower(Float4 a, Float4 b) { return a < b ? a : b; }
+
 class Pivot {
  public:
+  struct Tag {};
+  static Tag tag() { return {}; }
+
   explicit Pivot(const PaddedSite& site) : site_(site) {
     gather(site.grid->x + site.index, x_);
     gather(site.grid->y + site.index, y_);
@@ -31,21 +35,31 @@ class Pivot {
     const float fx = static_cast<float>(relative_x(site_, from));
     const float fy = static_cast<float>(relative_y(site_, from));
     Float4 cotangent[kVectors];
-    Float4 low{kNever, kNever, kNever, kNever};
     for (int v = 0; v < kVectors; ++v) {
       const Float4 left = fx * y_[v] - fy * x_[v];
       const Float4 value = (square_[v] - (fx * x_[v] + fy * y_[v])) / left;
-      cotangent[v] = left > 0 ? value : Float4{kNever, kNever, kNever, kNever};
-      low = cotangent[v] < low ? cotangent[v] : low;
+      Int4 code;
+      std::memcpy(&code, kCandidateCode + 4 * v, sizeof code);
+      const Float4 named = (Float4)(((Int4)value & ~0xFF) | code);
+      cotangent[v] = left > 0 ? named : Float4{kNever, kNever, kNever, kNever};
     }
+    const Float4 low =
+        lower(lower(lower(cotangent[0], cotangent[1]), lower(cotangent[2], cotangent[3])),
+              lower(cotangent[4], cotangent[5]));
     const float a = low[0] < low[1] ? low[0] : low[1], b = low[2] < low[3] ? low[2] : low[3];
     const float least = a < b ? a : b;
     if (!(least < kNever)) return 0;
-    const float limit = least + static_cast<float>(kTie) * (1 + (least < 0 ? -least : least));
+    const float limit = near_tie_limit(least);
     Int4 near{};
     for (int v = 0; v < kVectors; ++v)
       near |= (cotangent[v] <= limit) & (Int4{1, 2, 4, 8} << (4 * v));
-    return leftmost(site_, static_cast<unsigned>(near[0] | near[1] | near[2] | near[3]));
+    const auto set = static_cast<unsigned>(near[0] | near[1] | near[2] | near[3]);
+    if ((set & (set - 1)) != 0) return best_of(site_, from, set);
+    std::uint32_t bits;
+    std::memcpy(&bits, &least, sizeof bits);
+    const StarCode code = bits & 0xFFu;
+    const bool far = (fx * fx + fy * fy) * (1 + least * least) >= site_.grid->far;
+    return far ? better_afar(site_, from, code, Tag{}) : code;
   }
 
   static int first(StarWord word, int size) { return star_first(word, size); }
@@ -61,6 +75,7 @@ class Pivot {
     keep(1, load(here - 1));
     keep(2, load(here + stride - 2));
     keep(3, load(here + 2 * stride - 2));
+    keep(5, load(here - 2 * stride - 2));
     keep(4, Int4{here[-2], here[2 - stride], here[2 + stride], here[2 + 2 * stride]});
   }
 

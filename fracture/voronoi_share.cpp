@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~0u;
 constexpr std::size_t kLargestFan = 1u << 22;
+constexpr int kWholeCell = -1;
 
 // The cells around a vertex, each with its corner there; on the border also the sides at both ends.
 struct Fan {
@@ -28,10 +29,9 @@ class Band {
 
   void share(std::uint32_t begin, std::uint32_t end) {
     vertices.reserve(2 * static_cast<std::size_t>(end - begin) + 8);
-    for (std::uint32_t cell = begin; cell < end; ++cell) {
-      if (stars_.is_list(cell)) share_any(cell);
-      else share_word(cell);
-    }
+    // Blocks, so that finding the owned corners (unpredictable) and sharing them (long) are two loops.
+    constexpr std::uint32_t kBlock = 64;
+    for (std::uint32_t cell = begin; cell < end; cell += kBlock) share_block(cell, std::min(end, cell + kBlock));
   }
 
   std::vector<Vec2> vertices;
@@ -57,36 +57,39 @@ class Band {
     ++written;
   }
 
-  // A cell with only cells around it: the usual case, three cells at a vertex.
-  void share_word(std::uint32_t cell) {
-    const StarWord word = stars_.words[cell];
-    const int size = star_size(word);
-    const std::uint32_t begin = begin_of(cell);
-    StarCode a = star_code(word, size - 1);
-    for (int k = 0; k < size; ++k) {
-      const StarCode b = star_code(word, k);
-      if (a > kHere && b > kHere && !share_triple(cell, begin + static_cast<std::uint32_t>(k), a, b))
-        share_slowly(cell, begin + static_cast<std::uint32_t>(k));
-      a = b;
+  void share_block(std::uint32_t begin, std::uint32_t end) {
+    owned_.clear();
+    for (std::uint32_t cell = begin; cell < end; ++cell) {
+      const StarWord word = stars_.words[cell];
+      if (stars_.is_list(cell)) {
+        owned_.push_back({cell, kWholeCell});
+        continue;
+      }
+      for (StarWord set = owned_corners(word, star_size(word)); set != 0; set &= set - 1)
+        owned_.push_back({cell, __builtin_ctzll(set) / 8});
+    }
+    for (const Owned& owned : owned_) {
+      if (owned.place == kWholeCell) share_any(owned.cell);
+      else if (!share_triple(owned.cell, owned.place))
+        share_slowly(owned.cell, begin_of(owned.cell) + static_cast<std::uint32_t>(owned.place));
     }
   }
 
   std::uint32_t neighbour(std::uint32_t cell, StarCode code) const {
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(cell) +
-                                      rows_away(code) * std::int64_t{stars_.columns} +
-                                      columns_away(code));
+    return cell + static_cast<std::uint32_t>(stars_.offset[code]);
   }
 
-  bool share_triple(std::uint32_t cell, std::uint32_t corner, StarCode a, StarCode b) {
+  // The usual corner: three cells with nothing but cells around them. False if it is not.
+  bool share_triple(std::uint32_t cell, int place) {
+    const StarWord word = stars_.words[cell];
+    const StarCode a = star_before(word, place), b = star_code(word, place);
     const std::uint32_t cell_a = neighbour(cell, a), cell_b = neighbour(cell, b);
     const StarWord word_a = stars_.words[cell_a], word_b = stars_.words[cell_b];
-    if ((word_a | word_b) >> 56 == 0xFF && (stars_.is_list(cell_a) || stars_.is_list(cell_b)))
-      return false;
     const int in_a = star_find(word_a, reverse(a)), in_b = star_find(word_b, seen_from(b, a));
-    if (in_a == 8 || in_b == 8 || star_before(word_a, in_a) != seen_from(a, b) ||
-        star_before(word_b, in_b) != reverse(b))
+    if (stars_.is_list(cell_a) || stars_.is_list(cell_b) || in_a == 8 || in_b == 8) return false;
+    if (star_before(word_a, in_a) != seen_from(a, b) || star_before(word_b, in_b) != reverse(b))
       return false;
-    add(corner);
+    add(begin_of(cell) + static_cast<std::uint32_t>(place));
     add(begin_of(cell_a) + static_cast<std::uint32_t>(in_a));
     add(begin_of(cell_b) + static_cast<std::uint32_t>(in_b));
     const Vec2 centre = circle_centre(relative(cell, cell_a), relative(cell, cell_b));
@@ -174,11 +177,35 @@ class Band {
     return true;
   }
 
+  struct Owned {
+    std::uint32_t cell;
+    int place;
+  };
+
   const Sites& sites_;
   const Stars& stars_;
   Pattern& pattern_;
+  std::vector<Owned> owned_;
   Fan fan_;
 };
+
+Across across_of(std::int32_t neighbour) {
+  return neighbour < 0 ? Across::border(static_cast<std::uint32_t>(~neighbour))
+                       : Across::cell(static_cast<std::uint32_t>(neighbour));
+}
+
+// Always eight neighbours while there is room (the next cell writes over them): how many there are
+// cannot be predicted.
+void write_star(const Stars& stars, std::uint32_t cell, Across* out, const Across* limit) {
+  std::int32_t buffer[8];
+  const StarWord word = stars.words[cell];
+  if (stars.is_list(cell) || limit - out < 8) {
+    for (const std::int32_t neighbour : stars.star(cell, buffer)) *out++ = across_of(neighbour);
+    return;
+  }
+  for (int k = 0; k < 8; ++k)
+    out[k] = Across::cell(cell + static_cast<std::uint32_t>(stars.offset[star_code(word, k)]));
+}
 
 void write_stars(Pattern& pattern, const Stars& stars, int threads) {
   const std::uint32_t count = stars.cell_count();
@@ -191,14 +218,10 @@ void write_stars(Pattern& pattern, const Stars& stars, int threads) {
   pattern.cell_begin[count] = corner;
   pattern.corners.resize(corner);
   pattern.across.resize(corner);
-  in_bands(threads, count, [&](int, std::int64_t begin, std::int64_t end) {
-    std::int32_t buffer[8];
-    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
-      Across* out = pattern.across.data() + pattern.cell_begin[cell];
-      for (const std::int32_t neighbour : stars.star(cell, buffer))
-        *out++ = neighbour < 0 ? Across::border(static_cast<std::uint32_t>(~neighbour))
-                               : Across::cell(static_cast<std::uint32_t>(neighbour));
-    }
+  in_bands(threads, count, count, [&](int, std::int64_t begin, std::int64_t end) {
+    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell)
+      write_star(stars, cell, pattern.across.data() + pattern.cell_begin[cell],
+                 pattern.across.data() + pattern.cell_begin[end]);
   });
 }
 

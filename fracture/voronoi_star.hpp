@@ -26,10 +26,13 @@ struct PaddedGrid {
   const std::int32_t* x = nullptr;
   const std::int32_t* y = nullptr;
   std::int32_t stride = 0, columns = 0, rows = 0;
+  /// Squared diameter of an empty circle that may reach sites which are no candidates: two cells.
+  float far = 0;
 };
 
-/// Rows of star words a kernel keeps, mirrored columns included: neighbours reach three rows down.
-constexpr std::int32_t kScratchRows = 4;
+/// Rows of star words a kernel keeps, mirrored columns included: two in work, and neighbours reach
+/// three rows down.
+constexpr std::int32_t kScratchRows = 8;
 
 /// Proposes rows [row_begin, row_end) into words (rows × columns of the whole grid). `scratch` is
 /// kScratchRows * stride words of 0.
@@ -38,6 +41,15 @@ void propose_portable(const PaddedGrid& grid, std::int32_t row_begin, std::int32
 /// The same, eight candidates at a time; only if has_avx2().
 void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
                   StarWord* words, StarWord* scratch);
+
+/// Writes the cells of [begin, end) whose star word does not hold for certain to `doubtful` (room for
+/// all) and returns how many. For certain means exactly: every corner turns left, every edge is
+/// longer than kBriefEdge as a determinant (see voronoi_exact.cpp); lists are always doubtful.
+/// Neighbours lie less than 2^22 lattice units apart per axis. `xy`: the sites. Only if has_avx2().
+constexpr double kBriefEdge = 0x1p62;
+std::uint32_t doubtful_cells_avx2(const StarWord* words, const std::int32_t* xy,
+                                  std::int32_t columns, std::uint32_t begin, std::uint32_t end,
+                                  std::uint32_t* doubtful);
 
 [[maybe_unused]] static inline std::int32_t columns_away(StarCode code) {
   return static_cast<std::int32_t>(code & 15u) - 8;
@@ -64,7 +76,8 @@ void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t r
 }
 /// The code before place k, around the star.
 [[maybe_unused]] static inline StarCode star_before(StarWord word, int k) {
-  return star_code(word, k == 0 ? star_size(word) - 1 : k - 1);
+  const int size = star_size(word);
+  return star_code(word, k - 1 + (static_cast<int>(k == 0) * size));
 }
 /// Place of the smallest code.
 [[maybe_unused]] static inline int star_first(StarWord word, int size) {
@@ -73,6 +86,12 @@ void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t r
     if (star_code(word, k) < star_code(word, best)) best = k;
   return best;
 }
+/// A bit in byte k for every corner k whose cells on both sides come later.
+[[maybe_unused]] static inline StarWord owned_corners(StarWord word, int size) {
+  const StarWord low = 0x7F7F7F7F7F7F7F7Fu, high = 0x8080808080808080u;
+  const StarWord later = word & ((word & low) + 0x7777777777777777u) & high;  // bytes above kHere
+  return later & (later << 8 | later >> (8 * (size - 1)));
+}
 /// The word turned so that place k comes first.
 [[maybe_unused]] static inline StarWord star_turned(StarWord word, int size, int k) {
   if (k == 0) return word;
@@ -80,10 +99,10 @@ void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t r
   return size == 8 ? turned : turned & ((StarWord{1} << (8 * size)) - 1);
 }
 
-/// Two candidates for the next neighbour are tied when their cotangents differ by less: then the
-/// first one counter-clockwise is taken, and no neighbour of a cocircular set is skipped. Wider than
-/// float32 rounding; the certificate corrects a tie that was none.
-constexpr double kTie = 4e-6;
+/// Kernels keep a candidate's code in the lowest byte of its cotangent, so that the least cotangent
+/// names it. Candidates that differ by less, relatively, are therefore compared again exactly.
+constexpr float kNearTie = 1e-4f;
+constexpr float kNever = 1e30f;  ///< the cotangent of a candidate that is not to the left
 
 /// Site of the grid as the kernels see it: position in the padded arrays.
 struct PaddedSite {
@@ -101,103 +120,181 @@ struct PaddedSite {
   return site.grid->y[index_of(site, code)] - site.grid->y[site.index];
 }
 
-/// Where the third site of an empty circle around a site lies when the second comes later: row by
-/// row as the kernels load them. Another place is right for 4 in 10^5 circles at full jitter.
+/// Where the third site of an empty circle around a site lies when the second comes later, in the
+/// order in which the kernels load them: all places but those more than two cells away, which need a
+/// large circle, and few that did not occur in 10^6 cells at full jitter.
 /// Relative positions are below 2^23, so float32 holds them exactly.
-constexpr int kCandidates = 20;
-constexpr StarCode kCandidateCode[kCandidates] = {0x76, 0x77, 0x78, 0x79, 0x87, 0x88, 0x89,
-                                                  0x8A, 0x96, 0x97, 0x98, 0x99, 0xA6, 0xA7,
-                                                  0xA8, 0xA9, 0x86, 0x7A, 0x9A, 0xAA};
+constexpr int kCandidates = 24;
+constexpr std::int32_t kCandidateCode[kCandidates] = {
+    0x76, 0x77, 0x78, 0x79, 0x87, 0x88, 0x89, 0x8A, 0x96, 0x97, 0x98, 0x99,
+    0xA6, 0xA7, 0xA8, 0xA9, 0x86, 0x7A, 0x9A, 0xAA, 0x66, 0x67, 0x68, 0x69};
+[[maybe_unused]] static inline float near_tie_limit(float least) {
+  return least + kNearTie * (1 + (least < 0 ? -least : least));
+}
 
-/// Of the candidates in the set, the first one counter-clockwise. All within half a turn.
-[[maybe_unused]] static inline StarCode leftmost(const PaddedSite& site, unsigned set) {
-  StarCode best = kCandidateCode[__builtin_ctz(set)];
-  for (set &= set - 1; set != 0; set &= set - 1) {
-    const StarCode code = kCandidateCode[__builtin_ctz(set)];
-    if (std::int64_t{relative_x(site, code)} * relative_y(site, best) -
-            std::int64_t{relative_y(site, code)} * relative_x(site, best) >
-        0)
-      best = code;
+/// How a candidate sees the pair (site, known neighbour): the cotangent along / left of its angle.
+struct Sight {
+  StarCode code;
+  std::int64_t x, y;  ///< relative to the site
+  std::int64_t along, left;
+};
+[[maybe_unused]] static inline Sight sight_of(const PaddedSite& site, StarCode from,
+                                              StarCode code) {
+  const std::int64_t fx = relative_x(site, from), fy = relative_y(site, from);
+  const std::int64_t x = relative_x(site, code), y = relative_y(site, code);
+  return {code, x, y, x * (x - fx) + y * (y - fy), fx * y - fy * x};
+}
+/// Whether a sees the pair under a wider angle than b; of cocircular ones the first
+/// counter-clockwise wins, so that none of them is skipped. Both lie left; exact.
+[[maybe_unused]] static inline bool wins(const Sight& a, const Sight& b) {
+  __extension__ using Wide = __int128;
+  const Wide gap = static_cast<Wide>(a.along) * b.left - static_cast<Wide>(b.along) * a.left;
+  return gap < 0 || (gap == 0 && a.x * b.y - a.y * b.x > 0);
+}
+
+/// Of the candidates in the set (which float32 cannot tell apart), the one that wins.
+[[maybe_unused]] static StarCode best_of(const PaddedSite& site, StarCode from, unsigned set) {
+  Sight best{};
+  for (; set != 0; set &= set - 1) {
+    const auto code = static_cast<StarCode>(kCandidateCode[__builtin_ctz(set)]);
+    const Sight other = sight_of(site, from, code);
+    if (best.code == 0 || wins(other, best)) best = other;
   }
-  return best;
+  return best.code;
 }
 
 /// The next neighbour counter-clockwise after `from`: the site left of it that sees the pair under
-/// the widest angle (the empty circle). Searches the whole window; 0 if there is none.
+/// the widest angle (the empty circle). Searches the whole window, exactly; 0 if there is none.
 template <class Tag>
 static StarCode pivot_in_window(const PaddedSite& site, StarCode from, Tag) {
-  const double fx = relative_x(site, from), fy = relative_y(site, from);
-  StarCode best = 0;
-  double least = 0, best_x = 0, best_y = 0;
+  Sight best{};
   for (StarCode row = 0x50; row <= 0xB0; row += 0x10)
     for (StarCode code = row + 5; code <= row + 11; ++code) {
-      const double x = relative_x(site, code), y = relative_y(site, code);
-      const double left = fx * y - fy * x;
-      if (!(left > 0)) continue;
-      const double cotangent = (x * (x - fx) + y * (y - fy)) / left;
-      const double slack = kTie * (1 + (least < 0 ? -least : least));
-      const bool wins = best == 0 || cotangent < least - slack ||
-                        (cotangent <= least + slack && x * best_y - y * best_x > 0);
-      if (!wins) continue;
-      best = code, best_x = x, best_y = y, least = cotangent;
+      const Sight other = sight_of(site, from, code);
+      if (other.left > 0 && (best.code == 0 || wins(other, best))) best = other;
     }
-  return best;
+  return best.code;
+}
+
+/// The winner of the candidates, or a site more than two cells away that wins over it.
+template <class Tag>
+static StarCode better_afar(const PaddedSite& site, StarCode from, StarCode candidate, Tag) {
+  constexpr StarCode afar[] = {0x57, 0x58, 0x59, 0x75, 0x7B, 0x85, 0x8B, 0x95, 0x9B, 0xB7, 0xB8, 0xB9};
+  Sight best = sight_of(site, from, candidate);
+  for (const StarCode code : afar) {
+    const Sight other = sight_of(site, from, code);
+    if (other.left > 0 && wins(other, best)) best = other;
+  }
+  return best.code;
 }
 
 /// The nearest site of the window: surely a neighbour.
 template <class Tag>
 static StarCode nearest_in_window(const PaddedSite& site, Tag) {
   StarCode best = 0;
-  double least = 0;
+  std::int64_t least = 0;
   for (StarCode row = 0x50; row <= 0xB0; row += 0x10)
     for (StarCode code = row + 5; code <= row + 11; ++code) {
-      const double x = relative_x(site, code), y = relative_y(site, code);
+      const std::int64_t x = relative_x(site, code), y = relative_y(site, code);
       if (code == kHere || (best != 0 && x * x + y * y >= least)) continue;
       best = code, least = x * x + y * y;
     }
   return best;
 }
 
-/// Turns once around each site. The triangle to the left of a known edge is read from the star of a
+/// One turn around a site. The triangle to the left of a known edge is read from the star of a
 /// neighbour that came before (so stars agree by construction); only a triangle whose other two
 /// sites come later is searched, among the later sites: two searches a site.
 /// Pivot(site) prepares the search around a site, next(code) is the search, first(word, size) the
 /// place of the smallest code.
 template <class Pivot>
+struct Turn {
+  PaddedSite site;
+  Pivot pivot;
+  const StarWord* const* row;  ///< row[d]: stars of the row d below, at column 0
+  std::int32_t column;
+  StarCode first, code;  ///< code 0: given up
+  StarWord word = 0;
+  int size = 0;
+};
+
+template <class Pivot>
+static inline Turn<Pivot> start_turn(const PaddedGrid& grid, const StarWord* const* row,
+                                     std::int32_t j, std::int32_t i) {
+  const PaddedSite site{&grid, (j + kPadLow) * std::int64_t{grid.stride} + i + kPadLow};
+  StarCode first;
+  if (star_find(row[0][i - 1], kHere + 1) < 8) first = kHere - 1;
+  else if (star_find(row[1][i], kHere + 16) < 8) first = kHere - 16;
+  else if (star_find(row[1][i + 1], kHere + 15) < 8) first = kHere - 15;
+  else first = nearest_in_window(site, Pivot::tag());
+  return {site, Pivot(site), row, i, first, first};
+}
+
+/// Notes a neighbour and goes to the next. False when the turn is over.
+template <class Pivot>
+[[gnu::always_inline]] static inline bool step(Turn<Pivot>& turn) {
+  const StarCode code = turn.code;
+  turn.word |= StarWord{code} << (8 * turn.size++);
+  if (code > kHere) {
+    turn.code = turn.pivot.next(code);
+  } else {
+    const StarWord other = turn.row[-rows_away(code)][turn.column + columns_away(code)];
+    const int place = star_find(other, reverse(code));
+    if (place < 8) turn.code = (star_before(other, place) + code - kHere) & 0xFFu;
+    // A star that was found without this site contradicts it.
+    else turn.code = other != 0 ? 0 : pivot_in_window(turn.site, code, Pivot::tag());
+  }
+  return turn.code != turn.first && turn.code != 0 && turn.size < 8;
+}
+
+template <class Pivot>
+static inline StarWord star_of(const Turn<Pivot>& turn) {
+  if (turn.code != turn.first || turn.size < 3) return 0;
+  return star_turned(turn.word, turn.size, Pivot::first(turn.word, turn.size));
+}
+
+/// Two rows at a time, the upper one kSkew columns behind, so that the processor has two chains of
+/// dependent steps to work on and the upper row still finds all earlier stars.
+template <class Pivot>
 static void propose_rows(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
                          StarWord* words, StarWord* scratch) {
-  struct Tag {};
-  for (std::int32_t j = row_begin; j < row_end; ++j) {
-    StarWord* row[kScratchRows];  // row[d]: star words of the row d below
-    for (int d = 0; d < kScratchRows; ++d)
-      row[d] = scratch + ((j - d) & (kScratchRows - 1)) * std::int64_t{grid.stride} + kPadLow;
-    // The oldest row's words are reused: nothing may be found there before it is written.
-    for (std::int32_t i = 0; i < grid.columns; ++i) row[0][i] = 0;
-    for (std::int32_t i = 0; i < grid.columns; ++i) {
-      const PaddedSite site{&grid, (j + kPadLow) * std::int64_t{grid.stride} + i + kPadLow};
-      const Pivot pivot(site);
-      StarCode first;
-      if (star_find(row[0][i - 1], kHere + 1) < 8) first = kHere - 1;
-      else if (star_find(row[1][i], kHere + 16) < 8) first = kHere - 16;
-      else if (star_find(row[1][i + 1], kHere + 15) < 8) first = kHere - 15;
-      else first = nearest_in_window(site, Tag{});
-      StarWord word = 0;
-      int size = 0;
-      StarCode code = first;
-      do {
-        word |= StarWord{code} << (8 * size++);
-        if (code > kHere) {
-          code = pivot.next(code);
-          continue;
+  constexpr std::int32_t kSkew = 4;
+  const auto scratch_row = [&](std::int32_t j) {
+    return scratch + (j & (kScratchRows - 1)) * std::int64_t{grid.stride} + kPadLow;
+  };
+  for (std::int32_t j = row_begin; j < row_end; j += 2) {
+    const bool pair = j + 1 < row_end;
+    const StarWord *low[4], *high[4];
+    for (int d = 0; d < 4; ++d) low[d] = scratch_row(j - d), high[d] = scratch_row(j + 1 - d);
+    StarWord *low_out = scratch_row(j), *high_out = scratch_row(j + 1);
+    // The oldest rows are used again: nothing may be found there before it is written.
+    for (std::int32_t i = 0; i < grid.columns; ++i) low_out[i] = high_out[i] = 0;
+    const auto keep = [&](const Turn<Pivot>& turn, std::int32_t y, StarWord* out) {
+      const StarWord word = star_of(turn);
+      out[turn.column] = word;
+      words[y * std::int64_t{grid.columns} + turn.column] = word;
+    };
+    for (std::int32_t i = 0; i < grid.columns + kSkew; ++i) {
+      const bool lower = i < grid.columns, upper = pair && i >= kSkew;
+      if (lower && upper) {
+        Turn<Pivot> a = start_turn<Pivot>(grid, low, j, i);
+        Turn<Pivot> b = start_turn<Pivot>(grid, high, j + 1, i - kSkew);
+        bool more_a, more_b;
+        do {
+          more_a = step(a);
+          more_b = step(b);
+        } while (more_a && more_b);
+        while (more_a) more_a = step(a);
+        while (more_b) more_b = step(b);
+        keep(a, j, low_out);
+        keep(b, j + 1, high_out);
+      } else if (lower || upper) {
+        Turn<Pivot> a = lower ? start_turn<Pivot>(grid, low, j, i)
+                              : start_turn<Pivot>(grid, high, j + 1, i - kSkew);
+        while (step(a)) {
         }
-        const StarWord other = row[-rows_away(code)][i + columns_away(code)];
-        const int place = star_find(other, reverse(code));
-        code = place < 8 ? (star_before(other, place) + code - kHere) & 0xFFu
-                         : pivot_in_window(site, code, Tag{});
-      } while (code != first && code != 0 && size < 8);
-      word = code == first ? star_turned(word, size, Pivot::first(word, size)) : 0;
-      row[0][i] = word;
-      words[j * std::int64_t{grid.columns} + i] = word;
+        keep(a, lower ? j : j + 1, lower ? low_out : high_out);
+      }
     }
   }
 }

@@ -207,17 +207,16 @@ std::unique_ptr<aiMesh> bond_mesh(std::span<const Bond> bonds) {
 
 std::unique_ptr<aiMetadata> wall_metadata(const WallView& wall) {
   const Quaternion q = wall.rotation;
-  const std::pair<const char*, double> entries[] = {
-      {"thickness", wall.thickness},
-      {"density", wall.density},
-      {"volume_expected", wall.volume_expected},
-      {"position_x", wall.position.x},
-      {"position_y", wall.position.y},
-      {"position_z", wall.position.z},
-      {"rotation_x", q.x},
-      {"rotation_y", q.y},
-      {"rotation_z", q.z},
-      {"rotation_w", q.w}};
+  const std::pair<const char*, double> entries[] = {{"thickness", wall.thickness},
+                                                    {"density", wall.density},
+                                                    {"volume_expected", wall.volume_expected},
+                                                    {"position_x", wall.position.x},
+                                                    {"position_y", wall.position.y},
+                                                    {"position_z", wall.position.z},
+                                                    {"rotation_x", q.x},
+                                                    {"rotation_y", q.y},
+                                                    {"rotation_z", q.z},
+                                                    {"rotation_w", q.w}};
   constexpr unsigned kNumbers = std::size(entries);
   std::unique_ptr<aiMetadata> data(aiMetadata::Alloc(kNumbers + 2));
   unsigned at = 0;
@@ -356,7 +355,8 @@ T required(const aiMetadata* data, const char* key) {
 }
 
 Vec3 required_vector(const aiMetadata* data, const std::string& key) {
-  return {required<double>(data, (key + "_x").c_str()), required<double>(data, (key + "_y").c_str()),
+  return {required<double>(data, (key + "_x").c_str()),
+          required<double>(data, (key + "_y").c_str()),
           required<double>(data, (key + "_z").c_str())};
 }
 
@@ -538,7 +538,8 @@ void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path
   const std::string name = path.string();
   try {
     validate(walls);
-    const std::unique_ptr<aiScene> scene = make_scene(walls, suffix_of(path) != ".stl" && suffix_of(path) != ".ply");
+    const std::unique_ptr<aiScene> scene =
+        make_scene(walls, suffix_of(path) != ".stl" && suffix_of(path) != ".ply");
     Assimp::Exporter exporter;
     register_formats(exporter);
     auto* files = new OutputFiles;

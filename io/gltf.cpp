@@ -33,11 +33,11 @@ struct MaterialIds {
 // Everything about the file that is known before the first byte is written.
 struct Layout {
   UniqueLists lists;
-  std::vector<std::uint64_t> list_begin;    // bytes into the index block
-  std::vector<std::uint64_t> first_vertex;  // per wall
-  std::vector<std::uint64_t> bonds_begin;   // per wall, bytes into the bond block
+  std::vector<std::uint64_t> list_begin;                // bytes into the index block
+  std::vector<std::uint64_t> first_vertex;              // per wall
+  std::vector<std::uint64_t> bonds_begin;               // per wall, bytes into the bond block
   std::vector<std::pair<std::string, bool>> materials;  // name, inner
-  std::vector<MaterialIds> materials_of;    // per wall
+  std::vector<MaterialIds> materials_of;                // per wall
   std::uint64_t mesh_count = 0;
   Block positions, normals, uvs, indices, bonds;
   std::uint64_t binary_size = 0;
@@ -110,7 +110,8 @@ class Document {
       : walls_(walls), layout_(layout), out_(sink) {}
 
   std::uint64_t write(const std::string& binary_name) {
-    out_.text(R"({"asset":{"version":"2.0","generator":"sunder )" SUNDER_VERSION R"("},"scene":0,)");
+    out_.text(R"({"asset":{"version":"2.0","generator":"sunder )" SUNDER_VERSION
+              R"("},"scene":0,)");
     write_scene();
     write_nodes();
     if (layout_.mesh_count > 0) {
@@ -331,8 +332,7 @@ void Document::write_meshes() {
   out_.text("]");
 }
 
-void Document::write_primitive(std::uint64_t accessor, std::uint32_t list,
-                               std::uint32_t material) {
+void Document::write_primitive(std::uint64_t accessor, std::uint32_t list, std::uint32_t material) {
   out_.text(R"({"attributes":{"POSITION":)");
   out_.integer(accessor);
   out_.text(R"(,"NORMAL":)");
@@ -502,11 +502,23 @@ class BinaryWriter {
     std::memcpy(buffer_.data() + used_, &value, sizeof value);
     used_ += sizeof value;
   }
-  void put_float(double value) { put(static_cast<float>(value)); }
-  void put_vector(Vec3 v) {
-    put_float(v.x);
-    put_float(v.y);
-    put_float(v.z);
+  void put(Vec3 v) {
+    put(std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+  }
+  // Texture coordinates, v turned down as glTF wants it: a block at a time, in vector registers.
+  void put_uvs(std::span<const float> uvs) {
+    std::array<float, 4096> block;
+    while (!uvs.empty()) {
+      const std::size_t count = std::min(uvs.size(), block.size());
+      for (std::size_t i = 0; i + 1 < count; i += 2) {
+        block[i] = uvs[i];
+        block[i + 1] = 1.0f - uvs[i + 1];
+      }
+      if (used_ + count * sizeof(float) > kSize) flush();
+      std::memcpy(buffer_.data() + used_, block.data(), count * sizeof(float));
+      used_ += count * sizeof(float);
+      uvs = uvs.subspan(count);
+    }
   }
   void flush() {
     if (used_ > 0) sink_.write(std::span(buffer_).first(used_));
@@ -522,12 +534,11 @@ class BinaryWriter {
 
 void write_bonds(std::span<const Bond> bonds, BinaryWriter& out) {
   for (const Bond& bond : bonds) {
-    out.put(bond.a);
-    out.put(bond.b);
+    out.put(std::array{bond.a, bond.b});
   }
-  for (const Bond& bond : bonds) out.put_float(bond.area);
-  for (const Bond& bond : bonds) out.put_vector(bond.centroid);
-  for (const Bond& bond : bonds) out.put_vector(bond.normal);
+  for (const Bond& bond : bonds) out.put(static_cast<float>(bond.area));
+  for (const Bond& bond : bonds) out.put(bond.centroid);
+  for (const Bond& bond : bonds) out.put(bond.normal);
 }
 
 void write_list(const UniqueLists::List& list, BinaryWriter& out) {
@@ -546,12 +557,7 @@ void write_binary(std::span<const WallView> walls, const Layout& layout, ByteSin
   for (const WallView& wall : walls) pass(wall.positions);
   for (const WallView& wall : walls) pass(wall.normals);
   BinaryWriter out(sink);
-  for (const WallView& wall : walls) {
-    for (std::size_t i = 0; i < wall.uvs.size(); i += 2) {
-      out.put(wall.uvs[i]);
-      out.put(1.0f - wall.uvs[i + 1]);  // v runs down in glTF
-    }
-  }
+  for (const WallView& wall : walls) out.put_uvs(wall.uvs);
   for (const UniqueLists::List& list : layout.lists.lists) write_list(list, out);
   for (const WallView& wall : walls) write_bonds(wall.bonds, out);
   out.flush();

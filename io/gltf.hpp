@@ -9,8 +9,8 @@
 
 namespace sunder {
 
-/// Writes glTF 2.0 as docs/formats.md describes it. The walls are valid (see validate). Bytes depend
-/// on the walls' content only. Throws Error{output}: a GLB cannot hold more than 4 GiB.
+/// Writes glTF 2.0 as docs/formats.md describes it. The walls are valid (see validate). Bytes
+/// depend on the walls' content only. Throws Error{output}: a GLB cannot hold more than 4 GiB.
 void write_glb(std::span<const WallView> walls, ByteSink& out);
 /// The same as JSON with its binary beside it; `binary_name` is that file's name without folder.
 void write_gltf(std::span<const WallView> walls, const std::string& binary_name, ByteSink& json,

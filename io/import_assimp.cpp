@@ -25,9 +25,12 @@
 namespace sunder {
 namespace {
 
-// --- files the readers may open -------------------------------------------------------------------
+// --- files the readers may open
+// -------------------------------------------------------------------
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::input, what); }
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorCode::input, what);
+}
 
 class InputStream : public Assimp::IOStream {
  public:
@@ -94,7 +97,9 @@ class FolderFiles : public Assimp::IOSystem {
 
   static std::string percent_decoded(const std::string& name) {
     const auto digit = [](char c) {
-      return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 87 : -1;
+      return c >= '0' && c <= '9'                 ? c - '0'
+             : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 87
+                                                  : -1;
     };
     std::string text;
     for (std::size_t i = 0; i < name.size(); ++i) {
@@ -130,7 +135,8 @@ class FolderFiles : public Assimp::IOSystem {
   std::uint64_t limit_;
 };
 
-// --- aiScene → ImportedAsset ----------------------------------------------------------------------
+// --- aiScene → ImportedAsset
+// ----------------------------------------------------------------------
 
 // Leaves the one reader that the suffix names; assimp would else let any of its fifty try.
 void keep_only(Assimp::Importer& importer, const std::string& suffix) {
@@ -261,8 +267,11 @@ ImportedAsset read_with_assimp(const std::filesystem::path& path, const std::str
   importer.SetIOHandler(new FolderFiles(path, limits.file_size));  // owns it
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   if (scene == nullptr) refuse(importer.GetErrorString());
-  if (scene->mNumMeshes == 0) refuse("it holds no triangles");
   ImportedAsset asset = Flattener(*scene, path.stem().string()).run();
+  const bool empty = std::ranges::all_of(asset.walls, [](const ImportedWall& wall) {
+    return std::ranges::all_of(wall.chunks, [](const auto& chunk) { return chunk.inner.empty(); });
+  });
+  if (empty) refuse("it holds no triangles");
   asset.has_chunks = suffix == ".glb" || suffix == ".gltf" || suffix == ".obj";
   asset.has_materials = asset.has_chunks;
   return asset;

@@ -167,8 +167,8 @@ class ObjWriter {
   std::uint64_t position_base_ = 1, uv_base_ = 1, normal_base_ = 1;
 };
 
-void write_material(TextWriter& out, const std::string& name, const std::array<std::uint8_t, 3>& rgb,
-                    double roughness, double metallic) {
+void write_material(TextWriter& out, const std::string& name,
+                    const std::array<std::uint8_t, 3>& rgb, double roughness, double metallic) {
   out.text("newmtl ");
   out.text(name);
   out.text("\nKd");

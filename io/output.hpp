@@ -35,11 +35,12 @@ class OutputFile {
  private:
   [[noreturn]] void fail(const std::string& what, int error) const;
   void create();
+  void start_writeback();
 
   std::filesystem::path path_, temporary_;
   int descriptor_ = -1;
   int slot_ = -1;  ///< in the table remove_temporaries() walks
-  std::uint64_t position_ = 0, size_ = 0;
+  std::uint64_t position_ = 0, size_ = 0, started_ = 0;
 };
 
 /// Writes one whole file.

@@ -17,8 +17,8 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <span>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -31,7 +31,8 @@ constexpr rlim_t kStack = rlim_t{64} << 20;
 constexpr std::size_t kLongestText = 4096;
 enum class Answer : std::uint8_t { asset = 1, error = 2, out_of_memory = 3 };
 
-// --- the child ------------------------------------------------------------------------------------
+// --- the child
+// ------------------------------------------------------------------------------------
 
 class PipeWriter {
  public:
@@ -151,7 +152,8 @@ void confine(const ImportLimits& limits) {
   ::_exit(0);
 }
 
-// --- the parent -----------------------------------------------------------------------------------
+// --- the parent
+// -----------------------------------------------------------------------------------
 
 // Reads what the child sent; every size is checked against what really came.
 class PipeReader {

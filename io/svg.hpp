@@ -8,8 +8,8 @@
 namespace sunder {
 
 /// A picture of the asset's patterns, walls side by side: each flat, with border, openings, impact
-/// points and anchored sides, and below it in an oblique view with its chunks pushed apart (flat only
-/// above 5000 chunks). Millimetres, y up turned to SVG's y down. Same asset, same bytes.
+/// points and anchored sides, and below it in an oblique view with its chunks pushed apart (flat
+/// only above 5000 chunks). Millimetres, y up turned to SVG's y down. Same asset, same bytes.
 std::string draw_svg(const Asset& asset);
 
 }  // namespace sunder

@@ -11,9 +11,8 @@ namespace sunder {
 namespace {
 
 // Powers of ten that a double holds exactly.
-constexpr double kPower[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                             1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                             1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+constexpr double kPower[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                             1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 constexpr auto kPairs = [] {
   std::array<char, 200> pairs{};
@@ -24,7 +23,9 @@ constexpr auto kPairs = [] {
   return pairs;
 }();
 
-void put_pair(char* out, std::uint32_t value) { std::memcpy(out, &kPairs[2 * value], 2); }
+void put_pair(char* out, std::uint32_t value) {
+  std::memcpy(out, &kPairs[2 * value], 2);
+}
 
 // Nine digits of value < 10^9.
 void put_nine(char* out, std::uint32_t value) {

@@ -53,9 +53,7 @@ class TextWriter {
     at_ = buffer_.get();
   }
   /// Bytes of text so far.
-  std::uint64_t size() const {
-    return passed_ + static_cast<std::uint64_t>(at_ - buffer_.get());
-  }
+  std::uint64_t size() const { return passed_ + static_cast<std::uint64_t>(at_ - buffer_.get()); }
 
  private:
   static constexpr std::size_t kSize = std::size_t{1} << 18;

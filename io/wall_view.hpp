@@ -14,8 +14,8 @@
 
 namespace sunder {
 
-/// What a format's writer needs to know of a wall; the arrays belong to someone else: a MeshedAsset,
-/// or what was gathered from an aiScene. The mesh arrays are those of RenderMeshes.
+/// What a format's writer needs to know of a wall; the arrays belong to someone else: a
+/// MeshedAsset, or what was gathered from an aiScene. The mesh arrays are those of RenderMeshes.
 struct WallView {
   std::string name;
   std::string first_chunk;  ///< name of chunk 0; the others count up from it

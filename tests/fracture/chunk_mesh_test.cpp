@@ -94,7 +94,7 @@ TEST(RenderMeshes, AreSoundInFloatForEveryGenerator) {
 TEST(RenderMeshes, NormalsAreUnitAndPerpendicularToTheirTriangles) {
   const WallAsset asset = asset_of(VoronoiGridParams{0.3, 1}, 1, true);
   const RenderMeshes meshes = render_meshes(asset);
-  const auto vec = [](const std::vector<float>& data, std::size_t v) {
+  const auto vec = [](const RawVector<float>& data, std::size_t v) {
     return Vec3{data[3 * v], data[3 * v + 1], data[3 * v + 2]};
   };
   for (std::uint32_t c = 0; c < meshes.chunk_count(); ++c)

@@ -287,7 +287,7 @@ TEST(Voronoi, ClusteredSitesAreTheDefinition) {
 TEST(Voronoi, KernelsAndThreadsGiveTheSameBytes) {
   for (const double jitter : kJitters)
     for (const std::int32_t parts : {0, 4}) {
-      Sites sites = jittered_sites(make_grid({}, {60, 45}, 1), jitter, 21);
+      Sites sites = jittered_sites(make_grid({}, {90, 91}, 1), jitter, 21);
       if (parts > 0) coarsen(sites, parts);
       const Pattern reference = voronoi(sites, {.kernel = VoronoiKernel::portable});
       for (const int threads : {1, 2, 3, 7})
@@ -295,7 +295,7 @@ TEST(Voronoi, KernelsAndThreadsGiveTheSameBytes) {
           EXPECT_TRUE(same_bytes(reference, voronoi(sites, {kernel, threads})))
               << "jitter " << jitter << " threads " << threads;
     }
-  const Sites sites = random_sites(make_lattice({}, {3, 2}), 2000, 4);
+  const Sites sites = random_sites(make_lattice({}, {3, 2}), 6000, 4);
   EXPECT_TRUE(same_bytes(voronoi(sites), voronoi(sites, {.threads = 5})));
 }
 

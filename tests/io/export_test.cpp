@@ -69,7 +69,8 @@ std::multiset<Corners> triangles_of(const RenderMeshes& meshes, std::uint32_t ch
   for (std::uint32_t i = 0; i < range.count; i += 3) {
     Corners corners;
     for (std::uint32_t k = 0; k < 9; ++k) {
-      const std::size_t vertex = meshes.vertex_begin[chunk] + meshes.indices[range.begin + i + k / 3];
+      const std::size_t vertex =
+          meshes.vertex_begin[chunk] + meshes.indices[range.begin + i + k / 3];
       corners[k] = meshes.positions[3 * vertex + k % 3];
     }
     result.insert(corners);
@@ -108,11 +109,21 @@ TEST(PutNumber, ReadsBackAsTheSameFloat) {
 }
 
 TEST(PutNumber, WritesPlainShortDecimals) {
-  const std::pair<double, const char*> rows[] = {
-      {0, "0"},           {-0.0, "0"},          {1, "1"},         {-1.5, "-1.5"},
-      {0.1f, "0.100000001"}, {0.25, "0.25"},    {2400, "2400"},   {123456789, "123456789"},
-      {1e9, "1e9"},       {0.001, "0.001"},     {1e-5, "1e-5"},   {999999999.9, "1e9"},
-      {0.0001, "0.0001"}, {-12345.678, "-12345.678"}, {1.5e-7, "1.5e-7"}};
+  const std::pair<double, const char*> rows[] = {{0, "0"},
+                                                 {-0.0, "0"},
+                                                 {1, "1"},
+                                                 {-1.5, "-1.5"},
+                                                 {0.1f, "0.100000001"},
+                                                 {0.25, "0.25"},
+                                                 {2400, "2400"},
+                                                 {123456789, "123456789"},
+                                                 {1e9, "1e9"},
+                                                 {0.001, "0.001"},
+                                                 {1e-5, "1e-5"},
+                                                 {999999999.9, "1e9"},
+                                                 {0.0001, "0.0001"},
+                                                 {-12345.678, "-12345.678"},
+                                                 {1.5e-7, "1.5e-7"}};
   for (const auto& [value, expected] : rows) {
     char text[kNumberRoom + 1] = {};
     *put_number(text, value) = '\0';
@@ -129,7 +140,8 @@ TEST(Export, EveryFormatIsTheSameByteForByteThroughAssimp) {
     export_through_assimp(meshed, through / name);
   }
   EXPECT_EQ(direct.names(), through.names());
-  EXPECT_EQ(direct.names(), (std::vector<std::string>{"a.glb", "b.bin", "b.gltf", "c.mtl", "c.obj"}));
+  EXPECT_EQ(direct.names(),
+            (std::vector<std::string>{"a.glb", "b.bin", "b.gltf", "c.mtl", "c.obj"}));
   for (const std::string& name : direct.names()) {
     EXPECT_TRUE(content_of(direct / name) == content_of(through / name)) << name;
   }
@@ -202,7 +214,7 @@ TEST(Export, ObjVerticesAreTheMeshsFloats) {
     in_file.insert(p);
     texts.insert(line);
   }
-  const std::vector<float>& positions = meshed.meshes[0].positions;
+  const auto& positions = meshed.meshes[0].positions;
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     in_mesh.insert({positions[i], positions[i + 1], positions[i + 2]});
   }
@@ -321,7 +333,8 @@ TEST(Export, SpoiledMeshesAreRefusedBeforeAnythingIsWritten) {
       {"vertex infinite", [&](Asset&, RenderMeshes& m) { m.positions[0] = infinity; }},
       {"uv NaN", [&](Asset&, RenderMeshes& m) { m.uvs[3] = nan; }},
       {"normal NaN", [&](Asset&, RenderMeshes& m) { m.normals[5] = nan; }},
-      {"normal zero", [](Asset&, RenderMeshes& m) { m.normals[0] = m.normals[1] = m.normals[2] = 0; }},
+      {"normal zero",
+       [](Asset&, RenderMeshes& m) { m.normals[0] = m.normals[1] = m.normals[2] = 0; }},
       {"index out of range", [](Asset&, RenderMeshes& m) { m.indices[2] = 5000; }},
       {"index huge", [](Asset&, RenderMeshes& m) { m.indices[2] = UINT32_MAX; }},
       {"list out of range", [](Asset&, RenderMeshes& m) { m.outer[0] = 99999; }},
@@ -329,15 +342,19 @@ TEST(Export, SpoiledMeshesAreRefusedBeforeAnythingIsWritten) {
       {"range overflows", [](Asset&, RenderMeshes& m) { m.lists[0].begin = UINT32_MAX - 2; }},
       {"half a triangle", [](Asset&, RenderMeshes& m) { m.lists[0].count -= 1; }},
       {"vertices missing", [](Asset&, RenderMeshes& m) { m.uvs.pop_back(); }},
-      {"ranges not in order", [](Asset&, RenderMeshes& m) { std::swap(m.vertex_begin[1], m.vertex_begin[3]); }},
-      {"mass NaN", [&](Asset& a, RenderMeshes&) { a.walls[0].chunks[1].volume = static_cast<double>(nan); }},
+      {"ranges not in order",
+       [](Asset&, RenderMeshes& m) { std::swap(m.vertex_begin[1], m.vertex_begin[3]); }},
+      {"mass NaN",
+       [&](Asset& a, RenderMeshes&) { a.walls[0].chunks[1].volume = static_cast<double>(nan); }},
       {"chunks missing", [](Asset& a, RenderMeshes&) { a.walls[0].chunks.pop_back(); }},
       {"bond to nothing", [](Asset& a, RenderMeshes&) { a.walls[0].bonds[0].b = 12345; }},
       {"empty name", [](Asset& a, RenderMeshes&) { a.walls[0].wall.name = ""; }},
       {"name with a dot", [](Asset& a, RenderMeshes&) { a.walls[0].wall.name = "a.b"; }},
-      {"name too long", [](Asset& a, RenderMeshes&) { a.walls[0].wall.name = std::string(57, 'a'); }},
+      {"name too long",
+       [](Asset& a, RenderMeshes&) { a.walls[0].wall.name = std::string(57, 'a'); }},
       {"name twice", [](Asset& a, RenderMeshes&) { a.walls[0].wall.name = a.walls[1].wall.name; }},
-      {"name of a chunk", [](Asset& a, RenderMeshes&) { a.walls[1].wall.name = "facade_chunk_0002"; }},
+      {"name of a chunk",
+       [](Asset& a, RenderMeshes&) { a.walls[1].wall.name = "facade_chunk_0002"; }},
       {"material not UTF-8", [](Asset& a, RenderMeshes&) { a.walls[0].wall.material = "a\xff"; }},
       {"rotation not unit", [](Asset& a, RenderMeshes&) { a.walls[0].wall.rotation.w = 2; }}};
   const TestFolder folder;
@@ -387,6 +404,23 @@ TEST(Export, NodeNamesAreChunkNames) {
       ASSERT_EQ(*name, wall.chunk_name(c));
     }
   }
+}
+
+// Set up with: npm install --prefix tests/validate_gltf
+TEST(Export, KhronosValidatorFindsNoErrorsAndNoWarnings) {
+  const std::string tool = SUNDER_SOURCE_DIR "/tests/validate_gltf";
+  if (!std::filesystem::exists(tool + "/node_modules/gltf-validator")) {
+    GTEST_SKIP() << "gltf-validator is not installed";
+  }
+  const Asset asset = sample_asset();
+  const MeshedAsset meshed = mesh_asset(asset);
+  const TestFolder folder;
+  export_asset(meshed, folder / "a.glb");
+  export_asset(meshed, folder / "b c.gltf");
+  const std::string command = "node '" + tool + "/validate.js' '" + (folder / "a.glb").string() +
+                              "' '" + (folder / "b c.gltf").string() + "' > '" +
+                              (folder / "log").string() + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << content_of(folder / "log");
 }
 
 // The svg of a wall: one path per cell in the flat view, and well-formed nesting.

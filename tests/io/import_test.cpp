@@ -41,7 +41,8 @@ std::string gltf_with_buffer(const std::string& uri) {
          R"("name":"w_chunk_0000"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
          R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
          R"("min":[0,0,0],"max":[1,1,1]}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
-         R"("buffers":[{"byteLength":36,"uri":")" + uri + "\"}]}";
+         R"("buffers":[{"byteLength":36,"uri":")" +
+         uri + "\"}]}";
 }
 
 // Cuts the file of a format at twelve places.
@@ -54,14 +55,20 @@ void expect_truncations_refused(const std::string& suffix) {
   ASSERT_EQ(input_error(folder / ("whole" + suffix)), "");
   for (std::size_t i = 0; i < 12; ++i) {
     put_content(folder / ("cut" + suffix), whole.substr(0, whole.size() * i / 12));
-    const ImportLimits limits{.memory = std::uint64_t{256} << 20, .seconds = 0.2};
+    const ImportLimits limits{.memory = std::uint64_t{256} << 20, .seconds = 0.1};
     EXPECT_NE(input_error(folder / ("cut" + suffix), limits), "") << "cut to " << i << "/12";
   }
 }
 
-TEST(Import, TruncatedGlbIsAnError) { expect_truncations_refused(".glb"); }
-TEST(Import, TruncatedStlIsAnError) { expect_truncations_refused(".stl"); }
-TEST(Import, TruncatedPlyIsAnError) { expect_truncations_refused(".ply"); }
+TEST(Import, TruncatedGlbIsAnError) {
+  expect_truncations_refused(".glb");
+}
+TEST(Import, TruncatedStlIsAnError) {
+  expect_truncations_refused(".stl");
+}
+TEST(Import, TruncatedPlyIsAnError) {
+  expect_truncations_refused(".ply");
+}
 
 // A text format can end early and still be a file of its kind: less of it, or an error.
 TEST(Import, TruncatedObjHoldsLessOrIsAnError) {
@@ -107,9 +114,8 @@ TEST(Import, HostileFilesAreErrors) {
       {"no_meshes.glb", glb(R"({"asset":{"version":"2.0"}})")},
       {"deep_nodes.glb", glb(nested)},
       {"deep_json.gltf", std::string(200000, '[')},
-      {"node_cycle.glb",
-       glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
-           R"("nodes":[{"children":[1]},{"children":[0]}]})")},
+      {"node_cycle.glb", glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+                             R"("nodes":[{"children":[1]},{"children":[0]}]})")},
       {"node_missing.glb",
        glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[7]}],"nodes":[{}]})")},
       {"accessor_lies.gltf",
@@ -130,7 +136,7 @@ TEST(Import, HostileFilesAreErrors) {
   const TestFolder folder;
   for (const Row& row : rows) {
     put_content(folder / row.name, row.content);
-    const ImportLimits limits{.memory = std::uint64_t{256} << 20, .seconds = 0.5};
+    const ImportLimits limits{.memory = std::uint64_t{256} << 20, .seconds = 0.2};
     EXPECT_FALSE(input_error(folder / row.name, limits).empty()) << row.name;
   }
 }
@@ -147,8 +153,10 @@ TEST(Import, ACrashInsideTheReaderIsAnError) {
 TEST(Import, FilesOutsideTheFolderAreNotOpened) {
   const TestFolder folder;
   std::filesystem::create_directories(folder / "in");
-  const std::string triangle("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0"
-                             "\0\0\0\0\0\0\x80\x3f\0\0\0\0", 36);
+  const std::string triangle(
+      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0"
+      "\0\0\0\0\0\0\x80\x3f\0\0\0\0",
+      36);
   put_content(folder / "secret.bin", triangle);
   put_content(folder / "in/beside.bin", triangle);
   std::filesystem::create_symlink(folder / "secret.bin", folder / "in/link.bin");
@@ -166,20 +174,20 @@ TEST(Import, FilesOutsideTheFolderAreNotOpened) {
   }
 }
 
-// A material file outside the folder is not read: its material's name does not arrive.
+// The material file crashes the reader that opens it, so it shows whether it was opened.
 TEST(Import, MtllibDoesNotLeaveTheFolder) {
   const TestFolder folder;
   std::filesystem::create_directories(folder / "in");
-  const std::string mtl = "newmtl x_inner\nKd 1 1 1\n";
-  put_content(folder / "out.mtl", mtl);
-  put_content(folder / "in/in.mtl", mtl);
-  const auto inner = [&](const std::string& library) {
-    put_content(folder / "in/a.obj", "mtllib " + library + "\no w_chunk_0000\nv 0 0 0\nv 1 0 0\n" +
-                                         "v 0 1 0\nusemtl x_inner\nf 1 2 3\n");
-    return import_asset(folder / "in/a.obj").walls.at(0).chunks.at(0).inner.at(0) != 0;
+  put_content(folder / "out.mtl", "map_Kd a.png\n");
+  put_content(folder / "in/in.mtl", "map_Kd a.png\n");
+  const auto is_opened = [&](const std::string& library) {
+    put_content(folder / "in/a.obj",
+                "mtllib " + library + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n");
+    return !input_error(folder / "in/a.obj").empty();
   };
-  EXPECT_TRUE(inner("in.mtl"));
-  EXPECT_FALSE(inner("../out.mtl"));
+  EXPECT_TRUE(is_opened("in.mtl"));
+  EXPECT_FALSE(is_opened("../out.mtl"));
+  EXPECT_FALSE(is_opened((folder / "out.mtl").string()));
 }
 
 TEST(Import, LimitsHold) {
@@ -219,8 +227,11 @@ TEST(Import, AReaderThatTakesAllMemoryIsStopped) {
     });
     FAIL();
   } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+#ifndef __SANITIZE_ADDRESS__  // whose allocator ends the process instead of throwing
     EXPECT_NE(std::string(error.what()).find("ran out of memory"), std::string::npos)
         << error.what();
+#endif
   }
 }
 

@@ -25,8 +25,8 @@ inline WallAsset sample_wall(const std::string& name, std::uint32_t columns, std
   asset.wall.name = name;
   asset.wall.region = {rectangle({0.5 * columns, 0.5 * rows}), {}};
   asset.wall.anchors = {"bottom"};
-  asset.region = make_lattice_region(
-      asset.wall.region, make_lattice({}, {0.5 * columns, 0.5 * rows}), name);
+  asset.region =
+      make_lattice_region(asset.wall.region, make_lattice({}, {0.5 * columns, 0.5 * rows}), name);
   Pattern& p = asset.pattern;
   for (std::uint32_t j = 0; j <= rows; ++j) {
     for (std::uint32_t i = 0; i <= columns; ++i) {
