@@ -32,7 +32,8 @@ std::string processor() {
   return "unknown processor";
 }
 
-// Mean of the squared cell areas, in units of the mean area: one number that every program must hit.
+// Mean of the squared cell areas, in units of the mean area: one number that every program must
+// hit.
 double area_moment(const Polygons& polygons, double mean) {
   double sum = 0;
   const std::size_t count = polygons.begin.size() - 1;
@@ -146,8 +147,7 @@ void run(std::int32_t side, double jitter) {
         time_of(cells, 5, row.clock, [&] { pattern = voronoi(sites, row.params); });
     if (reference == 0) reference = timing.least;
     char hash[17];
-    std::snprintf(hash, sizeof hash, "%016llx",
-                  static_cast<unsigned long long>(hash_of(pattern)));
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(hash_of(pattern)));
     print(cells, row.name, timing, reference, area_moment(pattern, 1), hash);
   }
   const int runs = cells > 300000 ? 2 : 5;
@@ -155,8 +155,9 @@ void run(std::int32_t side, double jitter) {
     const char* name;
     Polygons (*cells)(const Sites&);
   };
-  for (const Peer& peer : {Peer{"CGAL Delaunay + dual", cgal_cells},
-                           Peer{"two-cell window", two_cell_window}, Peer{"voro++", voropp_cells}}) {
+  for (const Peer& peer :
+       {Peer{"CGAL Delaunay + dual", cgal_cells}, Peer{"two-cell window", two_cell_window},
+        Peer{"voro++", voropp_cells}}) {
     Polygons polygons;
     const Timing timing =
         time_of(cells, runs, CLOCK_THREAD_CPUTIME_ID, [&] { polygons = peer.cells(sites); });

@@ -68,8 +68,7 @@ Polygons cgal_cells(const Sites& sites) {
   std::vector<Vec2> polygon;
   for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end();
        ++v) {
-    if (!inner_cell(triangulation, v, size, polygon))
-      border_cell(triangulation, v, size, polygon);
+    if (!inner_cell(triangulation, v, size, polygon)) border_cell(triangulation, v, size, polygon);
     result.corners.insert(result.corners.end(), polygon.begin(), polygon.end());
     result.begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
   }

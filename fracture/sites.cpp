@@ -29,7 +29,9 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
-double grid_count(double length, double cell) { return std::max(1.0, std::round(length / cell)); }
+double grid_count(double length, double cell) {
+  return std::max(1.0, std::round(length / cell));
+}
 
 double cell_count(Vec2 size, double cell) {
   return grid_count(size.x, cell) * grid_count(size.y, cell);
@@ -177,8 +179,10 @@ Sites given_sites(const Lattice& lattice, std::span<const Vec2> metres) {
   std::size_t kept = 0;
   auto next = dropped.begin();
   for (std::uint32_t k = 0; k < sites.points.size(); ++k) {
-    if (next != dropped.end() && *next == k) ++next;
-    else sites.points[kept++] = sites.points[k];
+    if (next != dropped.end() && *next == k)
+      ++next;
+    else
+      sites.points[kept++] = sites.points[k];
   }
   sites.points.resize(kept);
   return sites;
@@ -197,8 +201,8 @@ Sites focused_sites(const Lattice& lattice, std::span<const Vec2> focus_points, 
          random_unit(seed, k, draw) < params.share; draw += 4) {
       if (draw >= (attempt + 1) * kFocusAttempts * 4) break;
       const double which = random_unit(seed, k, draw + 1);
-      const Vec2 focus = focus_points[static_cast<std::size_t>(
-          which * static_cast<double>(focus_points.size()))];
+      const Vec2 focus =
+          focus_points[static_cast<std::size_t>(which * static_cast<double>(focus_points.size()))];
       const double distance = params.radius * random_unit(seed, k, draw + 2);
       const Vec2 place = focus + distance * unit_at_turns(random_unit(seed, k, draw + 3));
       if (in_box(lattice, place)) return snap(lattice, place);

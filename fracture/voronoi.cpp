@@ -68,7 +68,8 @@ PaddedSites pad(const Sites& sites) {
     for (std::int64_t i = -kPadLow; i < grid.columns + kPadHigh; ++i, ++at) {
       const Mirror column = mirror(i, grid.columns, sites.lattice.width);
       const Site site = source[column.index];
-      padded.x[at] = column.mirrored ? static_cast<std::int32_t>(column.twice_axis - site.x) : site.x;
+      padded.x[at] =
+          column.mirrored ? static_cast<std::int32_t>(column.twice_axis - site.x) : site.x;
       padded.y[at] = row.mirrored ? static_cast<std::int32_t>(row.twice_axis - site.y) : site.y;
     }
   }
@@ -109,20 +110,21 @@ void unfold_border(Stars& stars, const Sites& sites) {
   }
 }
 
-// Proposes every cell. Returns those that a kernel left open, and that its other cells may therefore
-// not agree with.
+// Proposes every cell. Returns those that a kernel left open, and that its other cells may
+// therefore not agree with.
 std::vector<std::uint32_t> propose(Stars& stars, const Sites& sites, const Buckets& buckets,
                                    bool avx2, int threads) {
   std::vector<std::uint32_t> open;
   if (suits_kernels(sites)) {
     const PaddedSites padded = pad(sites);
-    in_bands(threads, sites.rows, stars.cell_count(), [&](int, std::int64_t begin, std::int64_t end) {
-      std::vector<StarWord> scratch(static_cast<std::size_t>(kScratchRows) *
-                                    static_cast<std::size_t>(padded.grid.stride));
-      (avx2 ? propose_avx2 : propose_portable)(
-          padded.grid, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end),
-          stars.words.data(), scratch.data());
-    });
+    in_bands(
+        threads, sites.rows, stars.cell_count(), [&](int, std::int64_t begin, std::int64_t end) {
+          std::vector<StarWord> scratch(static_cast<std::size_t>(kScratchRows) *
+                                        static_cast<std::size_t>(padded.grid.stride));
+          (avx2 ? propose_avx2 : propose_portable)(padded.grid, static_cast<std::int32_t>(begin),
+                                                   static_cast<std::int32_t>(end),
+                                                   stars.words.data(), scratch.data());
+        });
     unfold_border(stars, sites);
   }
   for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell) {
@@ -172,18 +174,22 @@ std::vector<std::uint32_t> doubtful_band(const Stars& stars, const Sites& sites,
 
 Findings certify_all(const Stars& stars, const Sites& sites, bool avx2, int threads) {
   std::vector<Findings> found(static_cast<std::size_t>(std::max(1, threads)));
-  in_bands(threads, stars.cell_count(), stars.cell_count(), [&](int band, std::int64_t begin, std::int64_t end) {
-    Findings& mine = found[static_cast<std::size_t>(band)];
-    for (const std::uint32_t cell : doubtful_band(stars, sites, avx2, begin, end)) {
-      CloseEdges close;
-      const Verdict verdict = certify(sites, stars, cell, stars.is_list(cell), close);
-      if (verdict == Verdict::good) continue;
-      if (verdict == Verdict::wrong) mine.wrong.push_back(cell);
-      else if (!close.brief.empty()) mine.brief.push_back(cell);
-      if (verdict == Verdict::close)
-        for (const std::int32_t neighbour : close.ties) mine.ties.push_back({cell, neighbour});
-    }
-  });
+  in_bands(threads, stars.cell_count(), stars.cell_count(),
+           [&](int band, std::int64_t begin, std::int64_t end) {
+             Findings& mine = found[static_cast<std::size_t>(band)];
+             for (const std::uint32_t cell : doubtful_band(stars, sites, avx2, begin, end)) {
+               CloseEdges close;
+               const Verdict verdict = certify(sites, stars, cell, stars.is_list(cell), close);
+               if (verdict == Verdict::good) continue;
+               if (verdict == Verdict::wrong)
+                 mine.wrong.push_back(cell);
+               else if (!close.brief.empty())
+                 mine.brief.push_back(cell);
+               if (verdict == Verdict::close)
+                 for (const std::int32_t neighbour : close.ties)
+                   mine.ties.push_back({cell, neighbour});
+             }
+           });
   for (std::size_t band = 1; band < found.size(); ++band) {
     append(found[0].ties, found[band].ties);
     append(found[0].wrong, found[band].wrong);
@@ -264,8 +270,7 @@ class Repair {
   bool closes(std::uint32_t cell, std::int32_t a, std::int32_t b) const {
     if (a < 0) return true;
     std::int32_t buffer[8];
-    const std::span<const std::int32_t> star =
-        stars_.star(static_cast<std::uint32_t>(a), buffer);
+    const std::span<const std::int32_t> star = stars_.star(static_cast<std::uint32_t>(a), buffer);
     const auto place = std::ranges::find(star, static_cast<std::int32_t>(cell));
     if (place == star.end()) return false;
     const std::int32_t next = place == star.begin() ? star.back() : *(place - 1);

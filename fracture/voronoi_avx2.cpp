@@ -50,8 +50,7 @@ class Pivot {
 
  private:
   static unsigned within(__m256 values, __m256 limits) {
-    return static_cast<unsigned>(
-        _mm256_movemask_ps(_mm256_cmp_ps(values, limits, _CMP_LE_OQ)));
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(values, limits, _CMP_LE_OQ)));
   }
   static __m128i load(const std::int32_t* from) {
     return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
@@ -77,9 +76,9 @@ class Pivot {
     const __m256 is_left = _mm256_cmp_ps(left, _mm256_setzero_ps(), _CMP_GT_OQ);
     const __m256i code =
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kCandidateCode + 8 * v));
-    const __m256 named = _mm256_or_ps(
-        _mm256_and_ps(value, _mm256_castsi256_ps(_mm256_set1_epi32(~0xFF))),
-        _mm256_castsi256_ps(code));
+    const __m256 named =
+        _mm256_or_ps(_mm256_and_ps(value, _mm256_castsi256_ps(_mm256_set1_epi32(~0xFF))),
+                     _mm256_castsi256_ps(code));
     return _mm256_blendv_ps(_mm256_set1_ps(kNever), named, is_left);
   }
 
@@ -121,8 +120,7 @@ unsigned holds(const Lines& before, const Lines& line, const Lines& after) {
                                   _mm256_mul_pd(square(line), turn(before, after))),
                     _mm256_mul_pd(square(after), entry));
   const __m256d left = _mm256_cmp_pd(entry, _mm256_setzero_pd(), _CMP_GT_OQ);
-  const __m256d is_long =
-      _mm256_cmp_pd(length, _mm256_set1_pd(kBriefEdge + 0x1p43), _CMP_GE_OQ);
+  const __m256d is_long = _mm256_cmp_pd(length, _mm256_set1_pd(kBriefEdge + 0x1p43), _CMP_GE_OQ);
   return static_cast<unsigned>(_mm256_movemask_pd(_mm256_and_pd(left, is_long)));
 }
 
@@ -141,12 +139,10 @@ __m256i lanes_of(const std::int32_t (&row)[8]) {
 
 // The star's cells; lanes behind the last one name the cell itself.
 __m256i neighbours(StarWord word, int size, std::uint32_t cell, __m256i columns) {
-  const __m256i code =
-      _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(word)));
+  const __m256i code = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(word)));
   const __m256i eight = _mm256_set1_epi32(8);
   const __m256i rows = _mm256_sub_epi32(_mm256_srli_epi32(code, 4), eight);
-  const __m256i side =
-      _mm256_sub_epi32(_mm256_and_si256(code, _mm256_set1_epi32(15)), eight);
+  const __m256i side = _mm256_sub_epi32(_mm256_and_si256(code, _mm256_set1_epi32(15)), eight);
   const __m256i offset = _mm256_add_epi32(_mm256_mullo_epi32(rows, columns), side);
   const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256i there = _mm256_cmpgt_epi32(_mm256_set1_epi32(size), lane);
@@ -188,13 +184,18 @@ std::uint32_t doubtful_cells_avx2(const StarWord* words, const std::int32_t* xy,
   for (std::uint32_t cell = begin; cell < end; ++cell) {
     const StarWord word = words[cell];
     doubtful[count] = cell;
-    if (word >> 56 == 0xFF) ++count;
-    else count += !surely_holds(word, xy, cell, width);
+    if (word >> 56 == 0xFF)
+      ++count;
+    else
+      count += !surely_holds(word, xy, cell, width);
   }
   return count;
 }
 
-bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"); }
+bool has_avx2() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+         __builtin_cpu_supports("bmi2");
+}
 
 void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
                   StarWord* words, StarWord* scratch) {
@@ -207,10 +208,12 @@ void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t r
 
 namespace sunder {
 
-bool has_avx2() { return false; }
+bool has_avx2() {
+  return false;
+}
 
-std::uint32_t doubtful_cells_avx2(const StarWord*, const std::int32_t*, std::int32_t,
-                                  std::uint32_t, std::uint32_t, std::uint32_t*) {
+std::uint32_t doubtful_cells_avx2(const StarWord*, const std::int32_t*, std::int32_t, std::uint32_t,
+                                  std::uint32_t, std::uint32_t*) {
   return 0;
 }
 

@@ -64,9 +64,10 @@ class Buckets {
 Star clip_cell_fast(const Sites& sites, const Buckets& buckets, std::uint32_t cell);
 Star clip_cell_exactly(const Sites& sites, const Buckets& buckets, std::uint32_t cell);
 
-/// What the certificate says of one star, decided exactly: `wrong` if a corner does not turn left or
-/// an edge has a negative length; `close` if edges have length 0, or next to it: their neighbours are
-/// in `ties` and `brief`. Only edges to later sites (and the box) are measured unless `all_edges`.
+/// What the certificate says of one star, decided exactly: `wrong` if a corner does not turn left
+/// or an edge has a negative length; `close` if edges have length 0, or next to it: their
+/// neighbours are in `ties` and `brief`. Only edges to later sites (and the box) are measured
+/// unless `all_edges`.
 enum class Verdict { good, close, wrong };
 struct CloseEdges {
   Star ties, brief;
@@ -78,9 +79,10 @@ Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool
 std::uint32_t doubtful_cells(const Sites& sites, const Stars& stars, std::uint32_t begin,
                              std::uint32_t end, std::uint32_t* doubtful);
 
-/// Stars as a pattern: vertices found once, by the smallest cell that meets there, and shared. Where a
-/// vertex does not close the stars contradict each other: then `wrong` gets the cells around it and
-/// the pattern is unfinished. `merged` counts vertices where more cells meet than there must.
+/// Stars as a pattern: vertices found once, by the smallest cell that meets there, and shared.
+/// Where a vertex does not close the stars contradict each other: then `wrong` gets the cells
+/// around it and the pattern is unfinished. `merged` counts vertices where more cells meet than
+/// there must.
 struct Shared {
   Pattern pattern;
   std::vector<std::uint32_t> wrong;
@@ -100,18 +102,22 @@ bool meets(const Sites& sites, const std::int32_t (&generators)[3], std::uint32_
 /// One pure function of the three.
 Vec2 place_of(const Sites& sites, const std::int32_t (&generators)[3]);
 
+/// A pair of doubles the compiler keeps in one register.
+using Double2 = double __attribute__((vector_size(16)));
+
 /// The centre of the circle through the origin and two sites relative to it, |x|, |y| < 2^25, to
 /// the last digits even when the three nearly line up. Either order gives the same bits.
-inline Vec2 circle_centre(Vec2 p, Vec2 q) {
-  // Without a branch: which one is nearer cannot be predicted.
-  const Vec2 sites[2] = {p, q};
-  const double squares[2] = {dot(p, p), dot(q, q)};
-  const int swap = squares[1] < squares[0];
-  const Vec2 near = sites[swap], far = sites[1 - swap];
-  const double square = squares[swap], gap = squares[1 - swap] - square;
-  const double scale = 1 / (2 * cross(near, far));
-  return {(square * (far.y - near.y) - gap * near.y) * scale,
-          (gap * near.x - square * (far.x - near.x)) * scale};
+inline Vec2 circle_centre(Double2 p, Double2 q) {
+  const Double2 pp = p * p, qq = q * q;
+  const double squares[2] = {pp[0] + pp[1], qq[0] + qq[1]};
+  // The nearer one first, without a branch: which it is cannot be predicted.
+  const auto swap = Double2{squares[1], squares[1]} < Double2{squares[0], squares[0]};
+  const Double2 near = swap ? q : p, far = swap ? p : q;
+  const double square = std::min(squares[0], squares[1]);
+  const double gap = std::max(squares[0], squares[1]) - square;
+  const double scale = 1 / (2 * (near[0] * far[1] - near[1] * far[0]));
+  const Double2 along = (square * (far - near) - gap * near) * scale;
+  return {along[1], -along[0]};
 }
 
 /// Calls work(band, begin, end) for bands of 0 … count, each on its own thread; with fewer cells a

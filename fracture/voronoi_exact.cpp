@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exact arithmetic of Voronoi cells. Clipping by the bisectors of sites in rings around the cell,
-// up to the security radius: Rycroft, "Voro++", Chaos 19 (2009). The certificate is Delaunay's lemma
-// for cells: positive edges that pair up make the cells a Voronoi diagram.
+// up to the security radius: Rycroft, "Voro++", Chaos 19 (2009). The certificate is Delaunay's
+// lemma for cells: positive edges that pair up make the cells a Voronoi diagram.
 #include <algorithm>
 #include <cmath>
 
@@ -32,13 +32,15 @@ LatticeLine line_to(const Sites& sites, std::uint32_t base, std::int32_t neighbo
                        : bisector(offset(sites, base, static_cast<std::uint32_t>(neighbour)));
 }
 
-// An edge of usual length measures 2^80 on the finest lattice, 2^20 less for each of the box's sides
-// next to it. One 2^18 times as short is looked at again once its ends have coordinates.
+// An edge of usual length measures 2^80 on the finest lattice, 2^20 less for each of the box's
+// sides next to it. One 2^18 times as short is looked at again once its ends have coordinates.
 constexpr auto kBrief = static_cast<Int128>(kBriefEdge);
 constexpr int kBrieferBySide = 20;  // log2
 
 // > 0 when the cell turns left from one edge to the next; exact.
-std::int64_t turn(const LatticeLine& p, const LatticeLine& q) { return p.a * q.b - q.a * p.b; }
+std::int64_t turn(const LatticeLine& p, const LatticeLine& q) {
+  return p.a * q.b - q.a * p.b;
+}
 
 // Signed length of the edge on `line` from the one before to the one after, times factors above 0:
 // the determinant of the three lines. `entry` and `exit` are the turns at its ends. Exact.
@@ -245,9 +247,7 @@ Buckets::Buckets(const Sites& sites) {
   width = height = std::max<std::int64_t>(1, std::llround(side));
   columns = static_cast<std::int32_t>(sites.lattice.width / width + 1);
   rows = static_cast<std::int32_t>(sites.lattice.height / height + 1);
-  const auto bucket_of = [&](Site site) {
-    return site.y / height * columns + site.x / width;
-  };
+  const auto bucket_of = [&](Site site) { return site.y / height * columns + site.x / width; };
   begin_.assign(static_cast<std::size_t>(std::int64_t{columns} * rows) + 1, 0);
   for (const Site& site : sites.points) ++begin_[bucket_of(site) + 1];
   for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
@@ -312,8 +312,8 @@ Verdict certify(const Sites& sites, const Stars& stars, std::uint32_t cell, bool
 
 bool meets(const Sites& sites, const std::int32_t (&generators)[3], std::uint32_t site) {
   const auto base = static_cast<std::uint32_t>(generators[0]);
-  const LatticeCrossing point = intersection(line_to(sites, base, generators[1]),
-                                             line_to(sites, base, generators[2]));
+  const LatticeCrossing point =
+      intersection(line_to(sites, base, generators[1]), line_to(sites, base, generators[2]));
   return side_of(bisector(offset(sites, base, site)), point) == 0;
 }
 
@@ -322,10 +322,11 @@ Vec2 place_of(const Sites& sites, const std::int32_t (&generators)[3]) {
   const LatticeLine p = line_to(sites, base, generators[1]);
   const LatticeLine q = line_to(sites, base, generators[2]);
   constexpr std::int64_t kSmall = std::int64_t{1} << 50;
-  const Vec2 relative = generators[2] >= 0 && std::max(p.c, q.c) < kSmall
-                            ? circle_centre({static_cast<double>(p.a), static_cast<double>(p.b)},
-                                            {static_cast<double>(q.a), static_cast<double>(q.b)})
-                            : rounded(intersection(p, q));
+  const Vec2 relative =
+      generators[2] >= 0 && std::max(p.c, q.c) < kSmall
+          ? circle_centre(Double2{static_cast<double>(p.a), static_cast<double>(p.b)},
+                          Double2{static_cast<double>(q.a), static_cast<double>(q.b)})
+          : rounded(intersection(p, q));
   const Site site = sites.points[base];
   Vec2 place{site.x + relative.x, site.y + relative.y};
   for (const std::int32_t generator : generators) {

@@ -18,7 +18,9 @@ Int4 load(const std::int32_t* from) {
   return result;
 }
 
-Float4 lower(Float4 a, Float4 b) { return a < b ? a : b; }
+Float4 lower(Float4 a, Float4 b) {
+  return a < b ? a : b;
+}
 
 class Pivot {
  public:

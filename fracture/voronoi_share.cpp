@@ -29,9 +29,11 @@ class Band {
 
   void share(std::uint32_t begin, std::uint32_t end) {
     vertices.reserve(2 * static_cast<std::size_t>(end - begin) + 8);
-    // Blocks, so that finding the owned corners (unpredictable) and sharing them (long) are two loops.
+    // Blocks, so that finding the owned corners (unpredictable) and sharing them (long) are two
+    // loops.
     constexpr std::uint32_t kBlock = 64;
-    for (std::uint32_t cell = begin; cell < end; cell += kBlock) share_block(cell, std::min(end, cell + kBlock));
+    for (std::uint32_t cell = begin; cell < end; cell += kBlock)
+      share_block(cell, std::min(end, cell + kBlock));
   }
 
   std::vector<Vec2> vertices;
@@ -47,9 +49,9 @@ class Band {
     return (corner == begin_of(cell) ? pattern_.cell_begin[cell + 1] : corner) - 1;
   }
 
-  Vec2 relative(std::uint32_t cell, std::int64_t other) const {
-    const Site a = sites_.points[cell], b = sites_.points[static_cast<std::size_t>(other)];
-    return {static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y)};
+  Double2 relative(Site a, std::uint32_t other) const {
+    const Site b = sites_.points[other];
+    return Double2{static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y)};
   }
 
   void add(std::uint32_t corner) {
@@ -69,7 +71,8 @@ class Band {
         owned_.push_back({cell, __builtin_ctzll(set) / 8});
     }
     for (const Owned& owned : owned_) {
-      if (owned.place == kWholeCell) share_any(owned.cell);
+      if (owned.place == kWholeCell)
+        share_any(owned.cell);
       else if (!share_triple(owned.cell, owned.place))
         share_slowly(owned.cell, begin_of(owned.cell) + static_cast<std::uint32_t>(owned.place));
     }
@@ -92,8 +95,8 @@ class Band {
     add(begin_of(cell) + static_cast<std::uint32_t>(place));
     add(begin_of(cell_a) + static_cast<std::uint32_t>(in_a));
     add(begin_of(cell_b) + static_cast<std::uint32_t>(in_b));
-    const Vec2 centre = circle_centre(relative(cell, cell_a), relative(cell, cell_b));
     const Site site = sites_.points[cell];
+    const Vec2 centre = circle_centre(relative(site, cell_a), relative(site, cell_b));
     vertices.push_back(sites_.lattice.to_metres(Vec2{site.x + centre.x, site.y + centre.y}));
     return true;
   }

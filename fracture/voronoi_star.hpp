@@ -8,9 +8,9 @@ namespace sunder {
 /// Proposing the cells of gridded sites, as the portable and the AVX2 kernel share it.
 ///
 /// A star word holds a cell's neighbours as up to eight bytes, counter-clockwise from the lowest: a
-/// neighbour i columns and j rows away is the byte 16 (j + 8) + i + 8, so bytes order like sites and
-/// differences of bytes are differences of places. Bytes behind the last neighbour are 0. A word
-/// that is 0 says nothing (more than eight neighbours, or a search that failed).
+/// neighbour i columns and j rows away is the byte 16 (j + 8) + i + 8, so bytes order like sites
+/// and differences of bytes are differences of places. Bytes behind the last neighbour are 0. A
+/// word that is 0 says nothing (more than eight neighbours, or a search that failed).
 ///
 /// Every function here is `static` or takes a type of the including file: what the AVX2 file
 /// compiles must never be what the linker keeps for processors without AVX2.
@@ -19,7 +19,8 @@ using StarCode = std::uint32_t;  ///< one byte of a star word
 constexpr StarCode kHere = 0x88;
 
 /// The grid's sites with mirror images of its border cells around it: they make the box's sides
-/// ordinary bisectors for the search. Entry (j + kPadLow) * stride + i + kPadLow is grid cell (i, j).
+/// ordinary bisectors for the search. Entry (j + kPadLow) * stride + i + kPadLow is grid cell (i,
+/// j).
 constexpr std::int32_t kPadLow = 3, kPadHigh = 5;
 constexpr std::int32_t kSmallestGrid = 6;  ///< fewest columns and rows
 struct PaddedGrid {
@@ -42,8 +43,8 @@ void propose_portable(const PaddedGrid& grid, std::int32_t row_begin, std::int32
 void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
                   StarWord* words, StarWord* scratch);
 
-/// Writes the cells of [begin, end) whose star word does not hold for certain to `doubtful` (room for
-/// all) and returns how many. For certain means exactly: every corner turns left, every edge is
+/// Writes the cells of [begin, end) whose star word does not hold for certain to `doubtful` (room
+/// for all) and returns how many. For certain means exactly: every corner turns left, every edge is
 /// longer than kBriefEdge as a determinant (see voronoi_exact.cpp); lists are always doubtful.
 /// Neighbours lie less than 2^22 lattice units apart per axis. `xy`: the sites. Only if has_avx2().
 constexpr double kBriefEdge = 0x1p62;
@@ -57,7 +58,9 @@ std::uint32_t doubtful_cells_avx2(const StarWord* words, const std::int32_t* xy,
 [[maybe_unused]] static inline std::int32_t rows_away(StarCode code) {
   return static_cast<std::int32_t>(code >> 4) - 8;
 }
-[[maybe_unused]] static inline StarCode reverse(StarCode code) { return (0x110u - code) & 0xFFu; }
+[[maybe_unused]] static inline StarCode reverse(StarCode code) {
+  return (0x110u - code) & 0xFFu;
+}
 /// The neighbour seen from another neighbour of the same site.
 [[maybe_unused]] static inline StarCode seen_from(StarCode from, StarCode code) {
   return (code - from + kHere) & 0xFFu;
@@ -121,9 +124,9 @@ struct PaddedSite {
 }
 
 /// Where the third site of an empty circle around a site lies when the second comes later, in the
-/// order in which the kernels load them: all places but those more than two cells away, which need a
-/// large circle, and few that did not occur in 10^6 cells at full jitter.
-/// Relative positions are below 2^23, so float32 holds them exactly.
+/// order in which the kernels load them: all places but those more than two cells away, which need
+/// a large circle, and few that did not occur in 10^6 cells at full jitter. Relative positions are
+/// below 2^23, so float32 holds them exactly.
 constexpr int kCandidates = 24;
 constexpr std::int32_t kCandidateCode[kCandidates] = {
     0x76, 0x77, 0x78, 0x79, 0x87, 0x88, 0x89, 0x8A, 0x96, 0x97, 0x98, 0x99,
@@ -179,7 +182,8 @@ static StarCode pivot_in_window(const PaddedSite& site, StarCode from, Tag) {
 /// The winner of the candidates, or a site more than two cells away that wins over it.
 template <class Tag>
 static StarCode better_afar(const PaddedSite& site, StarCode from, StarCode candidate, Tag) {
-  constexpr StarCode afar[] = {0x57, 0x58, 0x59, 0x75, 0x7B, 0x85, 0x8B, 0x95, 0x9B, 0xB7, 0xB8, 0xB9};
+  constexpr StarCode afar[] = {0x57, 0x58, 0x59, 0x75, 0x7B, 0x85,
+                               0x8B, 0x95, 0x9B, 0xB7, 0xB8, 0xB9};
   Sight best = sight_of(site, from, candidate);
   for (const StarCode code : afar) {
     const Sight other = sight_of(site, from, code);
@@ -223,10 +227,14 @@ static inline Turn<Pivot> start_turn(const PaddedGrid& grid, const StarWord* con
                                      std::int32_t j, std::int32_t i) {
   const PaddedSite site{&grid, (j + kPadLow) * std::int64_t{grid.stride} + i + kPadLow};
   StarCode first;
-  if (star_find(row[0][i - 1], kHere + 1) < 8) first = kHere - 1;
-  else if (star_find(row[1][i], kHere + 16) < 8) first = kHere - 16;
-  else if (star_find(row[1][i + 1], kHere + 15) < 8) first = kHere - 15;
-  else first = nearest_in_window(site, Pivot::tag());
+  if (star_find(row[0][i - 1], kHere + 1) < 8)
+    first = kHere - 1;
+  else if (star_find(row[1][i], kHere + 16) < 8)
+    first = kHere - 16;
+  else if (star_find(row[1][i + 1], kHere + 15) < 8)
+    first = kHere - 15;
+  else
+    first = nearest_in_window(site, Pivot::tag());
   return {site, Pivot(site), row, i, first, first};
 }
 
@@ -242,7 +250,8 @@ template <class Pivot>
     const int place = star_find(other, reverse(code));
     if (place < 8) turn.code = (star_before(other, place) + code - kHere) & 0xFFu;
     // A star that was found without this site contradicts it.
-    else turn.code = other != 0 ? 0 : pivot_in_window(turn.site, code, Pivot::tag());
+    else
+      turn.code = other != 0 ? 0 : pivot_in_window(turn.site, code, Pivot::tag());
   }
   return turn.code != turn.first && turn.code != 0 && turn.size < 8;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/background_sink.hpp"
 #include "io/export_files.hpp"
 #include "io/gltf.hpp"
 #include "io/obj.hpp"
@@ -92,8 +93,9 @@ void export_asset(const MeshedAsset& asset, const std::filesystem::path& path) {
     validate(walls);
     if (suffix != ".glb") return write_pair(walls, path, suffix);
     OutputFile file(path);
-    FileSink sink(file);
+    BackgroundSink sink(file);
     write_glb(walls, sink);
+    sink.finish();
     file.commit();
   } catch (const Error& error) {
     const std::string message = error.what();

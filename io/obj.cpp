@@ -23,12 +23,6 @@ std::string obj_name(std::string name) {
   return name;
 }
 
-Vec3 rotated(const Quaternion& q, Vec3 v) {
-  const Vec3 axis{q.x, q.y, q.z};
-  const Vec3 t = 2 * cross(axis, v);
-  return v + q.w * t + cross(axis, t);
-}
-
 // Vertices of a chunk → the different values among them, in order of first use. OBJ indexes
 // positions, texture coordinates and normals apart, so a chunk's faces share its corners.
 template <std::size_t Width>
@@ -107,7 +101,7 @@ class ObjWriter {
     const bool placed = wall.position == Vec3{} && wall.rotation == Quaternion{};
     for (const std::uint32_t v : positions_.gather(positions)) {
       const Vec3 p = vector_at(positions, v);
-      line("v ", placed ? p : rotated(wall.rotation, p) + wall.position);
+      line("v ", placed ? p : rotate(wall.rotation, p) + wall.position);
     }
     for (const std::uint32_t v : uvs_.gather(uvs)) {
       out_.text("vt ");
@@ -118,7 +112,7 @@ class ObjWriter {
     }
     for (const std::uint32_t v : normals_.gather(normals)) {
       const Vec3 n = vector_at(normals, v);
-      line("vn ", placed ? n : rotated(wall.rotation, n));
+      line("vn ", placed ? n : rotate(wall.rotation, n));
     }
   }
 

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -124,6 +125,7 @@ void confine(const ImportLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int null = ::open("/dev/null", O_RDWR);
   for (int descriptor = 0; descriptor <= 2; ++descriptor) ::dup2(null, descriptor);
+  ::malloc_trim(0);  // memory the parent no longer uses is not a reserve beyond the limit
   limit(RLIMIT_AS, address_space() + limits.memory);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_STACK, kStack);

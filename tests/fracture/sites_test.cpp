@@ -41,9 +41,12 @@ TEST(Grid, TilesTheWallWithNearlySquareCells) {
       EXPECT_EQ(grid.lattice.width, std::int64_t{grid.columns} * grid.cell_width);
       EXPECT_EQ(grid.lattice.height, std::int64_t{grid.rows} * grid.cell_height);
       EXPECT_LE(std::max(grid.lattice.width, grid.lattice.height), kMaxExtent);
-      EXPECT_EQ(std::max(grid.cell_width, grid.cell_height) & (std::max(grid.cell_width, grid.cell_height) - 1), 0);
+      EXPECT_EQ(std::max(grid.cell_width, grid.cell_height) &
+                    (std::max(grid.cell_width, grid.cell_height) - 1),
+                0);
       EXPECT_NEAR(grid.lattice.step.x * static_cast<double>(grid.lattice.width) / size.x, 1, 1e-15);
-      EXPECT_NEAR(grid.lattice.step.y * static_cast<double>(grid.lattice.height) / size.y, 1, 1e-15);
+      EXPECT_NEAR(grid.lattice.step.y * static_cast<double>(grid.lattice.height) / size.y, 1,
+                  1e-15);
     }
 }
 
@@ -128,7 +131,8 @@ TEST(RandomSites, FillTheBoxEvenly) {
   const Sites sites = random_sites(make_lattice({-5, 2}, {4, 1}), 40000, 11);
   std::vector<int> count(16, 0);
   for (const Site p : sites.points)
-    ++count[static_cast<std::size_t>(std::min<std::int64_t>(p.x * 4LL / sites.lattice.width, 3) * 4 +
+    ++count[static_cast<std::size_t>(std::min<std::int64_t>(p.x * 4LL / sites.lattice.width, 3) *
+                                         4 +
                                      std::min<std::int64_t>(p.y * 4LL / sites.lattice.height, 3))];
   for (const int c : count) EXPECT_NEAR(c, 2500, 5 * std::sqrt(2500));
 }
@@ -146,8 +150,9 @@ TEST(GivenSites, DropAndCountRepeatsAndKeepTheOrder) {
 
 TEST(GivenSites, OutsideTheBoxAreRefusedByNumberAndPlace) {
   const Lattice lattice = make_lattice({}, {2, 1});
-  const std::string message =
-      message_of([&] { given_sites(lattice, std::vector<Vec2>{{1, 0.5}, {2.5, 0.5}}); });
+  const std::string message = message_of([&] {
+    given_sites(lattice, std::vector<Vec2>{{1, 0.5}, {2.5, 0.5}});
+  });
   EXPECT_NE(message.find("site 1 at (2.5, 0.5)"), std::string::npos) << message;
   EXPECT_THROW(given_sites(lattice, std::vector<Vec2>{{NAN, 0}}), Error);
   EXPECT_THROW(given_sites(lattice, {}), Error);

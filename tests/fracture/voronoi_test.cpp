@@ -49,8 +49,7 @@ bool same_bytes(const Pattern& p, const Pattern& q) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
   };
   return equal(p.vertices, q.vertices) && equal(p.cell_begin, q.cell_begin) &&
-         equal(p.corners, q.corners) && equal(p.across, q.across) &&
-         p.all_convex == q.all_convex;
+         equal(p.corners, q.corners) && equal(p.across, q.across) && p.all_convex == q.all_convex;
 }
 
 void expect_sound(const Sites& sites, const Pattern& pattern, const std::string& what) {
@@ -226,8 +225,9 @@ TEST(Voronoi, SitesOnTheBoxSidesAreCellsLikeOthers) {
 }
 
 TEST(Voronoi, SmallAndThinWallsNeedNoWindow) {
-  for (const Vec2 size : {Vec2{1, 1}, Vec2{2, 1}, Vec2{2, 2}, Vec2{3, 3}, Vec2{1, 40}, Vec2{60, 1.4},
-                          Vec2{0.01, 30}, Vec2{30, 2e-4}, Vec2{5, 5}, Vec2{6, 6}, Vec2{6, 5}})
+  for (const Vec2 size :
+       {Vec2{1, 1}, Vec2{2, 1}, Vec2{2, 2}, Vec2{3, 3}, Vec2{1, 40}, Vec2{60, 1.4}, Vec2{0.01, 30},
+        Vec2{30, 2e-4}, Vec2{5, 5}, Vec2{6, 6}, Vec2{6, 5}})
     for (const double jitter : {0.0, 0.7, 1.0}) {
       const Sites sites = jittered_sites(make_grid({}, size, 1), jitter, 9);
       const std::string what = std::to_string(size.x) + " x " + std::to_string(size.y);
@@ -238,13 +238,15 @@ TEST(Voronoi, SmallAndThinWallsNeedNoWindow) {
 }
 
 TEST(Voronoi, CellsTenTimesAsLongAsWideNeedNoWindow) {
-  for (const auto& [width, height] : {std::pair{1000, 10000}, {10000, 1000}, {1000, 1500}, {1700, 1000}}) {
+  for (const auto& [width, height] :
+       {std::pair{1000, 10000}, {10000, 1000}, {1000, 1500}, {1700, 1000}}) {
     Sites sites = free_sites(box(20 * width, 12 * height), {});
     sites.columns = 20, sites.rows = 12, sites.cell_width = width, sites.cell_height = height;
     for (std::uint64_t k = 0; k < 240; ++k)
       sites.points.push_back(
           {static_cast<std::int32_t>((static_cast<double>(k % 20) + random_unit(1, k, 0)) * width),
-           static_cast<std::int32_t>((static_cast<double>(k / 20) + random_unit(1, k, 1)) * height)});
+           static_cast<std::int32_t>((static_cast<double>(k / 20) + random_unit(1, k, 1)) *
+                                     height)});
     const Pattern pattern = voronoi(sites);
     EXPECT_EQ(cells_unlike_the_definition(sites, pattern), 0u) << width << " x " << height;
     expect_sound(sites, pattern, "long cells");
@@ -324,7 +326,8 @@ TEST(Voronoi, WallsOfAnySizeAndPlaceAreSound) {
             jittered_sites(make_grid(origin, {size, size / 2}, size / 20), jitter, 6);
         const Pattern pattern = voronoi(sites);
         EXPECT_EQ(check(pattern), PatternDefects{}) << size << " at " << origin.x;
-        EXPECT_NEAR(total_area(pattern) / (size * size / 2), 1, 1e-11) << size << " at " << origin.x;
+        EXPECT_NEAR(total_area(pattern) / (size * size / 2), 1, 1e-11)
+            << size << " at " << origin.x;
       }
   const Sites far = jittered_sites(make_grid({1e6, -1e6}, {3, 2}, 0.1), 1, 6);
   EXPECT_EQ(check(voronoi(far)), PatternDefects{});
@@ -341,7 +344,8 @@ TEST(Voronoi, BorderVerticesLieOnTheBorderExactly) {
   const Sites sites = jittered_sites(make_grid({3.1, -7.7}, {6.3, 2.9}, 0.1), 1, 4);
   const Pattern pattern = voronoi(sites);
   const Vec2 low = sites.lattice.origin;
-  const Vec2 high = sites.lattice.to_metres(LatticePoint{sites.lattice.width, sites.lattice.height});
+  const Vec2 high =
+      sites.lattice.to_metres(LatticePoint{sites.lattice.width, sites.lattice.height});
   std::uint32_t on_border = 0;
   for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell) {
     const LoopRange loop{pattern.cell_begin[cell], pattern.cell_begin[cell + 1]};

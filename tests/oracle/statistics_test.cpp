@@ -18,7 +18,8 @@ struct Statistics {
 // Over cells whose site is `margin` away from the wall's border, in units of the mean cell.
 Statistics measure(const Sites& sites, double margin) {
   const Pattern pattern = voronoi(sites);
-  const Vec2 size = sites.lattice.to_metres(LatticePoint{sites.lattice.width, sites.lattice.height});
+  const Vec2 size =
+      sites.lattice.to_metres(LatticePoint{sites.lattice.width, sites.lattice.height});
   const double unit = std::sqrt(size.x * size.y / pattern.cell_count());
   double count = 0, area = 0, area2 = 0, sides = 0, sides2 = 0, perimeter = 0;
   for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell) {
@@ -41,7 +42,9 @@ Statistics measure(const Sites& sites, double margin) {
 
 // 86 400 cells: the variance of a variance is about 2 / count; limits are five standard errors and
 // the 0.3 % that the values themselves are known to.
-double limit(double value) { return value * (5 * std::sqrt(2.5 / 86400) + 0.003); }
+double limit(double value) {
+  return value * (5 * std::sqrt(2.5 / 86400) + 0.003);
+}
 
 TEST(Statistics, JitteredGridHasTheKnownMoments) {
   struct Row {

@@ -58,8 +58,8 @@ Pairs our_neighbours(const Pattern& pattern) {
   for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell)
     for (std::uint32_t k = pattern.cell_begin[cell]; k < pattern.cell_begin[cell + 1]; ++k)
       if (!pattern.across[k].is_border())
-        pairs.insert({std::min(cell, pattern.across[k].cell()),
-                      std::max(cell, pattern.across[k].cell())});
+        pairs.insert(
+            {std::min(cell, pattern.across[k].cell()), std::max(cell, pattern.across[k].cell())});
   return pairs;
 }
 
@@ -72,9 +72,8 @@ void expect_same_neighbours(const Sites& sites, const std::string& what) {
 TEST(VoronoiAgainstCgal, GriddedCellsHaveTheExactNeighbours) {
   for (const double jitter : {0.0, 0.3, 0.66, 0.9, 1.0})
     for (std::uint64_t seed = 0; seed < 3; ++seed)
-      expect_same_neighbours(
-          jittered_sites(make_grid({}, {60, 45}, 1), jitter, seed),
-          "jitter " + std::to_string(jitter) + " seed " + std::to_string(seed));
+      expect_same_neighbours(jittered_sites(make_grid({}, {60, 45}, 1), jitter, seed),
+                             "jitter " + std::to_string(jitter) + " seed " + std::to_string(seed));
 }
 
 TEST(VoronoiAgainstCgal, SitesOnAQuarterCellLatticeHaveTheExactNeighbours) {

@@ -16,10 +16,9 @@ std::vector<double> voropp_areas(const Sites& sites) {
   const double width = lattice.step.x * static_cast<double>(lattice.width);
   const double height = lattice.step.y * static_cast<double>(lattice.height);
   const double blocks = std::sqrt(static_cast<double>(sites.points.size()) / (4 * width * height));
-  voro::container container(0, width, 0, height, -0.5, 0.5,
-                            std::max(1, static_cast<int>(width * blocks)),
-                            std::max(1, static_cast<int>(height * blocks)), 1, false, false, false,
-                            8);
+  voro::container container(
+      0, width, 0, height, -0.5, 0.5, std::max(1, static_cast<int>(width * blocks)),
+      std::max(1, static_cast<int>(height * blocks)), 1, false, false, false, 8);
   for (std::size_t k = 0; k < sites.points.size(); ++k)
     container.put(static_cast<int>(k), lattice.step.x * sites.points[k].x,
                   lattice.step.y * sites.points[k].y, 0);
