@@ -107,6 +107,29 @@ void bench_size(double cells, const std::filesystem::path& folder) {
   std::fflush(stdout);
 }
 
+// Whole processes, from start to exit.
+void bench_process(const char* what, const std::string& arguments, const std::string& folder) {
+  const std::string command =
+      std::string(SUNDER_PROGRAM) + " " + arguments + " > " + folder + "/bench.out 2>&1";
+  std::vector<double> times;
+  for (int i = 0; i < 30; ++i)
+    times.push_back(seconds([&] {
+      if (std::system(command.c_str()) != 0) std::abort();
+    }));
+  std::ranges::sort(times);
+  std::printf("| `sunder %s` | %.1f | %.1f |\n", what, 1e3 * times.front(),
+              1e3 * times[times.size() / 2]);
+}
+
+void bench_processes(const std::string& folder) {
+  std::printf("\n| process, shell included | least ms | median ms |\n|---|---|---|\n");
+  bench_process("--version", "--version", folder);
+  const std::string wall = "fracture --wall 6x3x0.2 --cell 0.3 -o ";
+  bench_process((wall + "wall.glb").c_str(), wall + folder + "/bench.glb", folder);
+  std::filesystem::remove(folder + "/bench.glb");
+  std::filesystem::remove(folder + "/bench.out");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -129,5 +152,6 @@ int main(int argc, char** argv) {
     waitpid(child, &status, 0);
     if (status != 0) return 1;
   }
+  bench_processes(folder.string());
   return 0;
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string>
 
 #include "fracture/voronoi_detail.hpp"
+#include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
@@ -343,7 +345,10 @@ Pattern voronoi(const Sites& sites, VoronoiParams params, VoronoiStats* stats) {
   repair.run(std::move(found.wrong));
   Shared shared = share_vertices(sites, stars, threads);
   while (!shared.wrong.empty()) {
-    assert(!repair.all_exact(shared.wrong));
+    // Exact cells of distinct sites agree.
+    if (repair.all_exact(shared.wrong))
+      throw Error(ErrorCode::geometry, "a Voronoi pattern needs distinct sites; near site " +
+                                           std::to_string(shared.wrong[0]) + " two coincide");
     repair.run(std::move(shared.wrong));
     shared = share_vertices(sites, stars, threads);
   }

@@ -34,7 +34,9 @@ struct VoronoiStats {
 /// are strictly convex; an edge whose ends round to the same coordinates (possible only next to a
 /// tie) is dropped like a tie. Border edges are 0 bottom, 1 right, 2 top, 3 left. A cell's corners
 /// start with its smallest `across`; the bytes do not depend on kernel or threads.
-/// Expected O(n). Method: ring search to the security radius (Rycroft 2009), 128-bit certificate.
+/// Expected O(n). Throws Error{geometry} if two sites coincide.
+/// Method: on a grid, stars completed by empty circles, each found once by its first site; else ring
+/// search to the security radius (Rycroft 2009); then a 128-bit certificate and exact repair.
 Pattern voronoi(const Sites& sites, VoronoiParams params = {}, VoronoiStats* stats = nullptr);
 
 /// True when this processor can run the AVX2 kernel.

@@ -39,13 +39,24 @@ bool all_finite(std::span<const float> values) {
   return (found & 0x80000000u) == 0;
 }
 
-// Four vertices a turn, with the faults counted as integers: the compiler then uses vectors.
+bool is_unit(float squared_length) {
+  return (squared_length > 1 - 1e-4f) & (squared_length < 1 + 1e-4f);  // false for NaN
+}
+
+// Squares first, sixteen vertices a turn, faults counted as integers: that runs in vector registers
+// although a vertex has three numbers.
 bool all_unit(std::span<const float> normals) {
+  constexpr std::size_t kTurn = 48;
   std::uint32_t faults = 0;
-  for (std::size_t i = 0; i + 3 <= normals.size(); i += 3) {
-    const float x = normals[i], y = normals[i + 1], z = normals[i + 2];
-    const float excess = x * x + y * y + z * z - 1;
-    faults += excess > -1e-4f && excess < 1e-4f ? 0u : 1u;  // NaN is a fault
+  for (; normals.size() >= kTurn; normals = normals.subspan(kTurn)) {
+    float square[kTurn];
+    for (std::size_t k = 0; k < kTurn; ++k) square[k] = normals[k] * normals[k];
+    for (std::size_t k = 0; k < kTurn; k += 3)
+      faults += is_unit(square[k] + square[k + 1] + square[k + 2]) ? 0u : 1u;
+  }
+  for (std::size_t k = 0; k + 3 <= normals.size(); k += 3) {
+    const float x = normals[k], y = normals[k + 1], z = normals[k + 2];
+    faults += is_unit(x * x + y * y + z * z) ? 0u : 1u;
   }
   return faults == 0;
 }

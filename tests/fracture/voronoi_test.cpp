@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "meshing/error.hpp"
 #include "meshing/random.hpp"
 #include "meshing/trig.hpp"
 
@@ -299,6 +300,15 @@ TEST(Voronoi, KernelsAndThreadsGiveTheSameBytes) {
     }
   const Sites sites = random_sites(make_lattice({}, {3, 2}), 6000, 4);
   EXPECT_TRUE(same_bytes(voronoi(sites), voronoi(sites, {.threads = 5})));
+}
+
+TEST(Voronoi, CoincidingSitesAreRefused) {
+  for (const bool gridded : {false, true}) {
+    Sites sites = jittered_sites(make_grid({}, {8, 8}, 1), 1, 1);
+    if (!gridded) sites.columns = sites.rows = 0;
+    sites.points[27] = sites.points[28] = {4 << 20, 3 << 20 | 1 << 19};
+    EXPECT_THROW(voronoi(sites), Error) << gridded;
+  }
 }
 
 TEST(Voronoi, SaysWhichKernelRan) {
