@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "meshing/raw_vector.hpp"
 #include "meshing/vec.hpp"
 
 namespace sunder {
@@ -38,10 +39,10 @@ class Across {
 /// separates the cell from across[k]. Every interior edge occurs in exactly two cells, with the
 /// same two vertices in opposite order.
 struct Pattern {
-  std::vector<Vec2> vertices;  ///< metres, wall frame
-  std::vector<std::uint32_t> cell_begin{0};
-  std::vector<std::uint32_t> corners;
-  std::vector<Across> across;
+  RawVector<Vec2> vertices;  ///< metres, wall frame
+  RawVector<std::uint32_t> cell_begin{0};
+  RawVector<std::uint32_t> corners;
+  RawVector<Across> across;
   std::vector<std::uint32_t> hole_begin;
   /// Site or grid cell that cell c came from; empty: c itself. An opening that cuts a cell into
   /// several gives several cells with one origin.

@@ -2,6 +2,7 @@
 #include "fracture/quad_grid.hpp"
 
 #include <algorithm>
+#include <span>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -66,7 +67,7 @@ struct Cuts {
 };
 
 Cuts find_cuts(const QuadFrame& frame, const std::vector<LatticePoint>& points,
-               const std::vector<Vec2>& vertices) {
+               std::span<const Vec2> vertices) {
   Cuts cuts;
   cuts.reflex.resize(frame.quad_count());
   cuts.first_cell.resize(frame.quad_count() + 1);

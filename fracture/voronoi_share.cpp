@@ -36,7 +36,7 @@ class Band {
       share_block(cell, std::min(end, cell + kBlock));
   }
 
-  std::vector<Vec2> vertices;
+  RawVector<Vec2> vertices;
   std::vector<std::uint32_t> wrong;
   std::uint64_t merged = 0, written = 0, box_corners = 0, border_edges = 0;
 
