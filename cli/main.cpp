@@ -50,6 +50,7 @@ int finish(int code) {
 int main(int argc, char** argv) {
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
+  if (std::signal(SIGHUP, stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota is a write error, reported as such
   try {
     return finish(run(argc, argv));

@@ -5,7 +5,7 @@
 
 namespace sunder {
 
-/// Exit codes (see docs/guide.md).
+/// Exit codes (see docs/guide.md); a signal that stops the program gives 128 + its number.
 enum ExitCode : int {
   kExitOk = 0,
   kExitCheckFailed = 1,
@@ -13,7 +13,6 @@ enum ExitCode : int {
   kExitInput = 3,
   kExitOutput = 4,
   kExitBug = 70,
-  kExitInterrupted = 130,
 };
 
 /// One verb each; returns the exit code, throws Error.

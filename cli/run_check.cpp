@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 #include <cstdio>
+#include <string>
 
+#include "cli/print_soundness.hpp"
 #include "cli/progress.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
@@ -27,22 +29,17 @@ SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall) {
   return soup;
 }
 
-void print(const std::filesystem::path& path, const Soundness& s) {
-  const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf("%s: %s\n", path.c_str(), s.is_sound() ? "sound" : "NOT SOUND");
-  std::printf("  %llu chunks, %llu triangles, %llu bonds, volume %.9g m³", count(s.chunks),
-              count(s.triangles), count(s.bonds), s.volume);
-  if (!std::isnan(s.volume_expected)) std::printf(" (off by %.1e)", s.volume_error());
-  std::printf("\n");
-  const std::pair<const char*, std::uint64_t> faults[] = {
-      {"chunks are open", s.open_chunks},
-      {"chunks are not manifold", s.nonmanifold_chunks},
-      {"chunks are inside out", s.inverted_chunks},
-      {"pairs of chunks overlap", s.overlapping_pairs},
-      {"crack triangles have no partner", s.unmatched_faces},
-      {"slivers", s.slivers}};
-  for (const auto& [what, number] : faults)
-    if (number > 0) std::printf("  %llu %s\n", count(number), what);
+// Counts and volume, one line.
+std::string details_of(const ImportedAsset& asset, const Soundness& s) {
+  const auto count = [](std::uint64_t value) { return std::to_string(value); };
+  char volume[64], error[32] = "";
+  std::snprintf(volume, sizeof volume, "volume %.9g m³", s.volume);
+  if (!std::isnan(s.volume_expected))
+    std::snprintf(error, sizeof error, " (off by %.1e)", s.volume_error());
+  return (asset.has_chunks ? "  " + count(s.chunks) + " chunks, "
+                           : "  one solid, the format keeps no chunks apart: ") +
+         count(s.triangles) + " triangles, " +
+         (asset.has_chunks ? count(s.bonds) + " bonds, " : "") + volume + error + '\n';
 }
 
 }  // namespace
@@ -56,15 +53,15 @@ int run_check(const Options& options) {
     std::vector<SoupWall> soups;
     for (const ImportedWall& wall : asset.walls) soups.push_back(soup_of(asset, wall));
     ProgressBar bar("measuring", !options.quiet);
-    Report report{SUNDER_VERSION, 0, measure(soups, [&](double done) { bar.update(done); }),
-                  0, {}, {}};
+    Report report{
+        SUNDER_VERSION, 0, measure(soups, [&](double done) { bar.update(done); }), 0, {}, {}};
     watch.lap("measure");
     report.times = watch.steps();
     if (!report.soundness.is_sound()) exit_code = kExitCheckFailed;
     if (options.json)
       std::fputs(report_json(report).c_str(), stdout);
     else if (!options.quiet)
-      print(path, report.soundness);
+      print_soundness(stdout, path, report.soundness, details_of(asset, report.soundness));
     if (!options.report.empty()) write_file(options.report, report_json(report));
   }
   return exit_code;

@@ -4,9 +4,11 @@
 #include <memory>
 #include <thread>
 
+#include "cli/print_soundness.hpp"
 #include "cli/progress.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
+#include "cli/wall_scene.hpp"
 #include "fracture/measure.hpp"
 #include "io/export.hpp"
 #include "io/output.hpp"
@@ -17,11 +19,19 @@
 namespace sunder {
 namespace {
 
-Scene read(const Options& options) {
+Scene parse(const Options& options) {
   const SceneParams params{options.overrides, options.allow_outside};
-  Scene scene = options.wall_scene.empty()
-                    ? read_scene(options.inputs.front(), params)
-                    : parse_scene(options.wall_scene, "command line", params);
+  const bool is_file = options.wall_scene.empty();
+  try {
+    return is_file ? read_scene(options.inputs.front(), params)
+                   : parse_scene(options.wall_scene, kCommandLine, params);
+  } catch (const Error& error) {
+    throw named_by_option(error, is_file ? options.inputs.front().string() : kCommandLine);
+  }
+}
+
+Scene read(const Options& options) {
+  Scene scene = parse(options);
   if (options.seed) scene.seed = *options.seed;
   if (scene.walls.empty())
     throw Error(ErrorCode::input, "the scene has no walls, so there is nothing to fracture");
@@ -59,8 +69,8 @@ std::vector<std::pair<std::string, std::uint64_t>> skipped(const Asset& asset, b
   for (const WallAsset& wall : asset.walls) {
     outside += wall.stats.cells_outside;
     certified += wall.stats.cells_certified;
-    uncut += wall.pattern.cell_count() - std::min<std::uint64_t>(wall.stats.cells_cut,
-                                                                 wall.pattern.cell_count());
+    uncut += wall.pattern.cell_count() -
+             std::min<std::uint64_t>(wall.stats.cells_cut, wall.pattern.cell_count());
     unmeshed += meshed ? 0 : wall.pattern.cell_count();
   }
   return {{"cells_outside", outside},
@@ -116,8 +126,8 @@ int run_fracture(const Options& options) {
   watch.lap("fracture");
 
   const auto wants_report = [](const auto& path) { return path.extension() == ".json"; };
-  const bool report_wanted = options.json || !options.report.empty() ||
-                             std::ranges::any_of(options.outputs, wants_report);
+  const bool report_wanted =
+      options.json || !options.report.empty() || std::ranges::any_of(options.outputs, wants_report);
   const bool meshed = report_wanted || std::ranges::any_of(options.outputs, needs_meshes);
   const MeshedAsset meshes = meshed ? mesh_asset(asset, threads) : MeshedAsset{asset, {}};
   watch.lap("mesh");
@@ -137,7 +147,10 @@ int run_fracture(const Options& options) {
     if (!options.report.empty()) write_file(options.report, text);
     for (const auto& path : options.outputs)
       if (wants_report(path)) write_file(path, text);
-    if (!report.soundness.is_sound()) exit_code = kExitCheckFailed;
+    if (!report.soundness.is_sound()) {
+      exit_code = kExitCheckFailed;
+      print_soundness(stderr, "the asset", report.soundness);
+    }
   }
   if (!options.quiet) print_summary(asset, scene, options, watch);
   return exit_code;

@@ -2,9 +2,17 @@
 # `find_package(sunder)` for users of the library: headers keep their folders under include/sunder.
 include(CMakePackageConfigHelpers)
 
+# The public headers: what a user includes, and what those include. The others may change any time.
+set(sunder_meshing_headers error field lattice parallel random raw_vector region tri_mesh triangulate
+                           trig vec)
+set(sunder_fracture_headers asset bonds breaking chunk_mesh cut measure pattern quad_grid sites
+                            slivers spiderweb voronoi wall)
+set(sunder_io_headers export import output report scene)
 foreach(layer meshing fracture io)
-  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${layer}/*.hpp)
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sunder/${layer})
+  foreach(header ${sunder_${layer}_headers})
+    install(FILES ${PROJECT_SOURCE_DIR}/${layer}/${header}.hpp
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sunder/${layer})
+  endforeach()
 endforeach()
 install(TARGETS sunder sunder_meshing sunder_fracture sunder_io sunder_command EXPORT sunder-targets)
 install(EXPORT sunder-targets NAMESPACE sunder:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sunder)

@@ -9,6 +9,7 @@
 #include "fracture/quad_grid.hpp"
 #include "fracture/sites.hpp"
 #include "fracture/slivers.hpp"
+#include "fracture/tidy.hpp"
 #include "fracture/voronoi.hpp"
 #include "meshing/parallel.hpp"
 #include "meshing/random.hpp"
@@ -18,6 +19,9 @@ namespace {
 
 // Default limit for slivers as a part of the generator's typical cell size.
 constexpr double kSliverSize = 0.05;
+// What is nearer than this part of the wall's size in cut or cracked cells is joined: float32 files
+// cannot tell on which side of an edge such a vertex lies.
+constexpr double kNearest = 0x1p-20;
 
 std::uint64_t wall_seed(std::uint64_t seed, const std::string& name) {
   std::uint64_t hash = 0xCBF29CE484222325u;  // FNV-1a
@@ -214,8 +218,15 @@ WallPattern make_pattern(const Wall& given, const FractureParams& params, Fractu
   FractureStats own;
   FractureStats& s = stats ? *stats : own;
   WallPattern result = std::visit(PatternMaker(wall, params, s), wall.pattern);
-  const double size = wall.min_cell >= 0 ? wall.min_cell : kSliverSize * typical_cell(wall);
-  result.pattern = merge_slivers(std::move(result.pattern), size * size, &s.slivers_merged);
+  const double cell = typical_cell(wall);
+  const Vec2 size = bounding_box(wall.region.outline).high;
+  const bool plain = result.pattern.all_convex;  // neither cut nor cracked: no edge is too short
+  if (!plain)
+    result.pattern = join_near_vertices(
+        std::move(result.pattern), std::min(kNearest * std::max(size.x, size.y), 1e-3 * cell));
+  const double least = wall.min_cell >= 0 ? wall.min_cell : kSliverSize * cell;
+  result.pattern = merge_slivers(std::move(result.pattern), least * least, &s.slivers_merged);
+  if (!plain || s.slivers_merged > 0) result.pattern = split_pinches(std::move(result.pattern));
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
 
 #include "meshing/triangulate.hpp"
 
@@ -103,13 +104,16 @@ std::uint32_t cell_at(const Pattern& pattern, Vec2 point) {
 std::vector<std::uint32_t> cells_near(const Pattern& pattern, std::uint32_t start, Vec2 centre,
                                       double radius) {
   std::vector<std::uint32_t> found{start};
+  std::set<std::uint32_t> seen{start};
   for (std::size_t i = 0; i < found.size(); ++i)
     for_each_corner(pattern, found[i], [&](std::uint32_t k, std::uint32_t next) {
       const Across across = pattern.across[k];
-      if (across.is_border() || std::ranges::find(found, across.cell()) != found.end()) return;
+      if (across.is_border() || seen.contains(across.cell())) return;
       if (distance_squared(centre, pattern.vertices[pattern.corners[k]],
-                           pattern.vertices[pattern.corners[next]]) <= radius * radius)
+                           pattern.vertices[pattern.corners[next]]) <= radius * radius) {
+        seen.insert(across.cell());
         found.push_back(across.cell());
+      }
     });
   std::ranges::sort(found);
   return found;

@@ -48,8 +48,8 @@ std::vector<std::uint8_t> shown_faces(const Pattern& pattern, std::span<const st
 /// none does; of several that share a border the first. O(cells).
 std::uint32_t cell_at(const Pattern& pattern, Vec2 point);
 
-/// The cells that a disc meets, found from `start` (the cell of its centre) across edges; sorted.
-/// Touches only cells near the disc.
+/// The cells that a disc meets, found from `start` (the cell of its centre) across edges that the
+/// disc meets; sorted. What only an opening connects is not found. Touches only cells near the disc.
 std::vector<std::uint32_t> cells_near(const Pattern& pattern, std::uint32_t start, Vec2 centre,
                                       double radius);
 

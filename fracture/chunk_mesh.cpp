@@ -71,8 +71,10 @@ std::vector<Triangle> split_touching_corners(const FlatCell& flat, const LocalLo
       const auto& loop = local.loops[l];
       const std::uint32_t v = loop[k - flat.loops[l].begin];
       std::uint32_t to = loop[flat.loops[l].next(k) - flat.loops[l].begin];
-      for (auto it = triangle_at.find({v, to}); it != triangle_at.end();
-           it = triangle_at.find({v, to})) {
+      // Around the vertex until the border; once round at most, should the loops be overturned.
+      std::size_t turns = 0;
+      for (auto it = triangle_at.find({v, to}); it != triangle_at.end() && turns < triangles.size();
+           it = triangle_at.find({v, to}), ++turns) {
         const Triangle& t = triangles[it->second];
         const auto i = static_cast<std::size_t>(std::ranges::find(t, v) - t.begin());
         result[it->second][i] = k;
@@ -100,10 +102,16 @@ std::vector<Triangle> fan(std::uint32_t size) {
   return triangles;
 }
 
-// The convex test first; then a fan from corner 0 has no flat triangle.
+// A fan from corner 0 of a convex cell, unless a corner is so nearly straight that its triangle
+// could have no area.
 std::vector<Triangle> face_triangles(const Pattern& pattern, std::uint32_t cell,
                                      const FlatCell& flat) {
-  if (is_strictly_convex(pattern, cell)) return fan(static_cast<std::uint32_t>(flat.places.size()));
+  bool clear = flat.loops.size() == 1;
+  for (std::size_t i = 2; clear && i < flat.places.size(); ++i) {
+    const Vec2 a = flat.places[i - 1] - flat.places[0], b = flat.places[i] - flat.places[0];
+    clear = cross(a, b) > 1e-12 * length(a) * length(b);
+  }
+  if (clear && is_strictly_convex(pattern, cell)) return fan(static_cast<std::uint32_t>(flat.places.size()));
   return triangulate_cell(flat);
 }
 

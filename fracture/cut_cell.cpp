@@ -156,6 +156,10 @@ class CellCutter {
       return vertex_nodes_[k];
     }
     if (const Corner* c = corner_on(cell_.lines[k], line)) return c->node;
+    // Boundary edges that overlap cross here at one place; the first of them, the same one in both
+    // cells, names it.
+    for (const EdgePoint& p : on_edge_[k])
+      if (side_of(line, nodes_[p.node].place) == 0) return p.node;
     assert(!across_[k].is_border());
     const std::uint32_t other = across_[k].cell();
     const NodeKey key{NodeKey::crossing, {std::min(id_, other), std::max(id_, other), f}};
@@ -339,9 +343,18 @@ class CellCutter {
 
   std::size_t owner_of(const std::vector<std::uint32_t>& hole,
                        const std::vector<std::vector<std::uint32_t>>& outer) const {
-    const LatticePoint at = relative(nodes_[half_edges_[hole[0]].from].key.ids[0]);
-    for (std::size_t i = 0; i < outer.size(); ++i)
-      if (outer.size() == 1 || contains(outer[i], at)) return i;
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+      if (outer.size() == 1) return i;
+      // A hole may touch the loop that it lies in, or one beside it, but not everywhere.
+      const auto is_apart = [&](std::uint32_t h) {
+        return std::ranges::none_of(outer[i], [&](std::uint32_t e) {
+          return half_edges_[e].from == half_edges_[h].from;
+        });
+      };
+      const auto free = std::ranges::find_if(hole, is_apart);
+      if (free != hole.end() && contains(outer[i], relative(nodes_[half_edges_[*free].from].key.ids[0])))
+        return i;
+    }
     assert(false && "every hole lies in a part");
     return 0;
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "meshing/random.hpp"
+#include "meshing/region.hpp"
 #include "meshing/triangulate.hpp"
 
 namespace sunder {
@@ -91,23 +92,32 @@ class WallMeasure {
   }
 
   // Crack faces all contain the direction of the wall's thickness: it is perpendicular to any two
-  // of them that are not parallel. Looks at some of the chunks only.
+  // of them that are not parallel. With fewer, it is the direction of most of the outer area that is
+  // left to choose from. Looks at some of the chunks only.
   void choose_front() {
-    std::vector<Vec3> cracks, outer;
+    std::vector<Vec3> cracks, outer;  // unit normals; area vectors, one per direction
     const std::uint32_t step = 1 + wall_.chunk_count / 64;
     for (std::uint32_t c = 0; c < wall_.chunk_count; c += step) {
       const SoupChunk chunk = wall_.chunk(c);
       for (std::size_t t = 0; 3 * t < chunk.triangles.size(); ++t) {
         const Vec3 n = twice_area(chunk, t);
-        if (length(n) > 0) (is_outer(chunk, t) ? outer : cracks).push_back((1 / length(n)) * n);
+        if (!(length(n) > 0)) continue;
+        if (!is_outer(chunk, t))
+          cracks.push_back((1 / length(n)) * n);
+        else
+          add_direction(outer, n);
       }
     }
     Vec3 axis;
     for (const Vec3& crack : cracks)
       if (const Vec3 n = cross(cracks[0], crack); length(n) > length(axis)) axis = n;
-    if (length(axis) < 1e-3)  // all cracks parallel: an outer face across them will do
+    if (length(axis) < 1e-3) {
+      axis = {};
       for (const Vec3& n : outer)
-        if (cracks.empty() || std::abs(dot(n, cracks[0])) < 1e-3) axis = n;
+        if ((cracks.empty() || std::abs(dot(n, cracks[0])) < 1e-3 * length(n)) &&
+            length(n) > length(axis))
+          axis = n;
+    }
     if (!(length(axis) > 0)) return;
     normal_ = (1 / length(axis)) * axis;
     if (std::abs(normal_.z) > 1 - 1e-12) {
@@ -117,6 +127,15 @@ class WallMeasure {
     right_ = cross(std::abs(normal_.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal_);
     right_ = (1 / length(right_)) * right_;
     up_ = cross(normal_, right_);
+  }
+
+  static void add_direction(std::vector<Vec3>& sums, Vec3 n) {
+    const auto same = std::ranges::find_if(
+        sums, [&](const Vec3& sum) { return dot(sum, n) > 0.999 * length(sum) * length(n); });
+    if (same != sums.end())
+      *same = *same + n;
+    else if (sums.size() < 64)
+      sums.push_back(n);
   }
 
   static Vec3 twice_area(const SoupChunk& chunk, std::size_t t) {
@@ -209,6 +228,7 @@ class WallMeasure {
       for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 p = point(chunk, chunk.triangles[3 * t + i]);
         front.at[i] = {dot(p, right_), dot(p, up_)};
+        if (!std::isfinite(front.at[i].x + front.at[i].y)) return;  // the volume is not finite either
         low = {std::min(low.x, front.at[i].x), std::min(low.y, front.at[i].y)};
         high = {std::max(high.x, front.at[i].x), std::max(high.y, front.at[i].y)};
       }
@@ -221,6 +241,7 @@ class WallMeasure {
     front_area_ += area;
   }
 
+  // Whether an edge of a has all of b on its far side; boxes first.
   static bool separates(const FrontTriangle& a, const FrontTriangle& b) {
     for (std::size_t i = 0; i < 3; ++i) {
       bool apart = true;
@@ -236,32 +257,50 @@ class WallMeasure {
     friend auto operator<=>(const Entry&, const Entry&) = default;
   };
 
-  // Pairs of front triangles that share a bucket of a grid, then separating edges, exactly.
+  // Pairs of front triangles that share a bucket of a grid, then separating edges, exactly. A
+  // triangle over many buckets is compared with all others by its box instead, so that no file can
+  // ask for more memory than a multiple of its size.
   void find_overlaps() {
     if (fronts_.empty()) return;
-    const double size = 2 * std::sqrt(front_area_ / static_cast<double>(fronts_.size()));
+    Vec2 low = fronts_[0].at[0], high = low;
+    for (const FrontTriangle& t : fronts_) {
+      const Box box = bounding_box(t.at);
+      low = {std::min(low.x, box.low.x), std::min(low.y, box.low.y)};
+      high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y)};
+    }
+    constexpr double kMostBuckets = 4096;  // per axis
+    const double size = std::max({2 * std::sqrt(front_area_ / static_cast<double>(fronts_.size())),
+                                  (high.x - low.x) / kMostBuckets, (high.y - low.y) / kMostBuckets});
     std::vector<Entry> entries;
+    std::vector<std::uint32_t> large;
     for (std::uint32_t t = 0; t < fronts_.size(); ++t) {
-      const auto& at = fronts_[t].at;
-      const auto cell = [&](double v) { return static_cast<std::int64_t>(std::floor(v / size)); };
-      const auto [x0, x1] = std::minmax({at[0].x, at[1].x, at[2].x});
-      const auto [y0, y1] = std::minmax({at[0].y, at[1].y, at[2].y});
-      for (std::int64_t x = cell(x0); x <= cell(x1); ++x)
-        for (std::int64_t y = cell(y0); y <= cell(y1); ++y)
-          entries.push_back({x * 0x100000001 + y, t});
+      const Box box = bounding_box(fronts_[t].at);
+      const auto bucket = [&](double v) { return static_cast<std::int64_t>(v / size); };
+      const std::int64_t x0 = bucket(box.low.x - low.x), x1 = bucket(box.high.x - low.x);
+      const std::int64_t y0 = bucket(box.low.y - low.y), y1 = bucket(box.high.y - low.y);
+      if ((x1 - x0 + 1) * (y1 - y0 + 1) > 64) {
+        large.push_back(t);
+        continue;
+      }
+      for (std::int64_t x = x0; x <= x1; ++x)
+        for (std::int64_t y = y0; y <= y1; ++y) entries.push_back({x << 32 | y, t});
     }
     std::ranges::sort(entries);
-    std::vector<std::array<std::uint32_t, 2>> pairs;
     for (std::size_t i = 0; i < entries.size(); ++i)
-      for (std::size_t j = i + 1; j < entries.size() && entries[j].bucket == entries[i].bucket; ++j) {
-        const FrontTriangle& a = fronts_[entries[i].triangle];
-        const FrontTriangle& b = fronts_[entries[j].triangle];
-        if (a.chunk != b.chunk && !separates(a, b) && !separates(b, a))
-          pairs.push_back({std::min(a.chunk, b.chunk), std::max(a.chunk, b.chunk)});
-      }
-    std::ranges::sort(pairs);
+      for (std::size_t j = i + 1; j < entries.size() && entries[j].bucket == entries[i].bucket; ++j)
+        compare_fronts(entries[i].triangle, entries[j].triangle);
+    for (const std::uint32_t a : large)
+      for (std::uint32_t b = 0; b < fronts_.size(); ++b) compare_fronts(a, b);
+    std::ranges::sort(pairs_);
     result_.overlapping_pairs +=
-        static_cast<std::uint64_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+        static_cast<std::uint64_t>(std::unique(pairs_.begin(), pairs_.end()) - pairs_.begin());
+  }
+
+  void compare_fronts(std::uint32_t i, std::uint32_t j) {
+    const FrontTriangle& a = fronts_[i];
+    const FrontTriangle& b = fronts_[j];
+    if (a.chunk == b.chunk || separates(a, b) || separates(b, a)) return;
+    pairs_.push_back({std::min(a.chunk, b.chunk), std::max(a.chunk, b.chunk)});
   }
 
   const SoupWall& wall_;
@@ -271,6 +310,7 @@ class WallMeasure {
   std::vector<std::uint64_t> edges_;
   std::vector<CrackTriangle> cracks_;
   std::vector<FrontTriangle> fronts_;
+  std::vector<std::array<std::uint32_t, 2>> pairs_;
   Vec3 normal_{0, 0, 1}, right_{1, 0, 0}, up_{0, 1, 0};
   double front_area_ = 0;
 };

@@ -18,6 +18,9 @@ double loop_area(const Pattern& pattern, const std::vector<std::uint32_t>& corne
   return sum / 2;
 }
 
+// A cell without area is none, whatever the limit.
+bool is_small(double area, double limit) { return area < limit || !(area > 0); }
+
 class SliverMerger {
  public:
   SliverMerger(const Pattern& pattern, std::vector<double> areas)
@@ -29,7 +32,7 @@ class SliverMerger {
   std::uint64_t merge(double min_area) {
     std::set<std::pair<double, std::uint32_t>> small;
     for (std::uint32_t c = 0; c < pattern_.cell_count(); ++c)
-      if (area_[c] < min_area) small.insert({area_[c], c});
+      if (is_small(area_[c], min_area)) small.insert({area_[c], c});
     std::uint64_t merged = 0;
     while (!small.empty()) {
       const std::uint32_t cell = small.begin()->second;
@@ -39,7 +42,7 @@ class SliverMerger {
       small.erase({area_[into], into});
       area_[into] += area_[cell];
       absorb(into, cell);
-      if (area_[into] < min_area) small.insert({area_[into], into});
+      if (is_small(area_[into], min_area)) small.insert({area_[into], into});
       ++merged;
     }
     return merged;
@@ -52,7 +55,7 @@ class SliverMerger {
     vertex_id_.assign(pattern_.vertices.size(), kNone);
     visited_.assign(pattern_.corners.size(), false);
     for (std::uint32_t c = 0; c < pattern_.cell_count(); ++c)
-      if (group_[c] == c) append_group(result, c);
+      if (stays(c)) append_group(result, c);
     return result;
   }
 
@@ -97,7 +100,12 @@ class SliverMerger {
     number_.assign(pattern_.cell_count(), 0);
     std::uint32_t count = 0;
     for (std::uint32_t c = 0; c < pattern_.cell_count(); ++c)
-      if (group_[c] == c) number_[c] = count++;
+      if (stays(c)) number_[c] = count++;
+  }
+
+  // A cell without area and without neighbours is a trace of rounding in the region itself.
+  bool stays(std::uint32_t c) const {
+    return group_[c] == c && (area_[c] > 0 || best_neighbour(c) != kNone);
   }
 
   std::uint32_t cell_of(std::uint32_t corner) const {
@@ -180,7 +188,7 @@ Pattern merge_slivers(Pattern pattern, double min_area, std::uint64_t* merged) {
   bool any = false;
   for (std::uint32_t c = 0; c < pattern.cell_count(); ++c) {
     areas[c] = cell_area(pattern, c);
-    any |= areas[c] < min_area;
+    any |= is_small(areas[c], min_area);
   }
   if (merged) *merged = 0;
   if (!any) return pattern;

@@ -242,12 +242,19 @@ bool LatticeRegion::is_box() const {
 LatticeRegion make_lattice_region(const Region& region, const Lattice& lattice,
                                   const std::string& what) {
   const RegionCheck check(lattice, what);
+  std::size_t corners = region.outline.size();
+  for (const Loop& opening : region.openings) corners += opening.size();
+  if (corners > kMaxCorners)
+    check.fail("outline and openings have " + std::to_string(corners) + " corners, at most " +
+               std::to_string(kMaxCorners) + " are possible");
   std::vector<NamedLoop> loops{check.snap(region.outline, "the outline", true)};
+  // A corner beyond the box by less than a lattice step is on it: 0.1 + 0.2 is above 0.3.
+  const Box exact = bounding_box(region.outline);
+  const Box box{exact.low - lattice.step, exact.high + lattice.step};
   for (std::size_t i = 0; i < region.openings.size(); ++i) {
     loops.push_back(check.snap(region.openings[i], "opening " + std::to_string(i), false));
     for (const Vec2& p : region.openings[i])
-      if (const Box box = bounding_box(region.outline);
-          p.x < box.low.x || p.y < box.low.y || p.x > box.high.x || p.y > box.high.y)
+      if (p.x < box.low.x || p.y < box.low.y || p.x > box.high.x || p.y > box.high.y)
         check.fail("opening " + std::to_string(i) + " has a corner at " + text(p) +
                    " outside the outline; an opening may touch the outline but not cross it");
     for (std::size_t j = 1; j <= i; ++j) check.check_apart(loops[j], loops[i + 1]);
@@ -255,7 +262,9 @@ LatticeRegion make_lattice_region(const Region& region, const Lattice& lattice,
   }
   LatticeRegion result{lattice, {}, {}, {0}};
   Int128 left = 0;
-  for (const NamedLoop& loop : loops) {
+  for (NamedLoop& loop : loops) {
+    for (Vec2& p : loop.places)
+      p = {std::clamp(p.x, exact.low.x, exact.high.x), std::clamp(p.y, exact.low.y, exact.high.y)};
     result.corners.insert(result.corners.end(), loop.points.begin(), loop.points.end());
     result.places.insert(result.places.end(), loop.places.begin(), loop.places.end());
     result.loop_begin.push_back(result.edge_count());

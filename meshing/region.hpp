@@ -52,6 +52,9 @@ struct LatticeRegion {
   bool is_box() const;
 };
 
+/// Most corners of outline and openings together; checking them takes time with their square.
+constexpr std::size_t kMaxCorners = 20000;
+
 /// Puts a region on a lattice over its bounding box and checks it: exact, O(edges²).
 /// Throws Error{geometry} naming the loops, corners and coordinates at fault: fewer than 3 corners,
 /// a value that is not finite, corners nearer than a lattice step, a loop that meets itself, loops

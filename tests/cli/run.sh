@@ -28,6 +28,15 @@ version() {
   expect_text out "sunder "
   expect_exit 0 "$sunder" fracture --help
   expect_text out "--jitter"
+  # The program needs nothing of the folder it was built in, nor an environment.
+  mkdir elsewhere
+  cd elsewhere || exit 1
+  for verb in --version "schema scene" "schema parameters" "fracture --help"; do
+    expect_exit 0 env -i "$sunder" $verb
+    [ -s out ] || fail "$verb prints nothing from another folder"
+    [ -s err ] && fail "$verb complains: $(cat err)"
+  done
+  expect_files ""
 }
 usage_errors() {
   expect_exit 2 "$sunder"
@@ -45,12 +54,75 @@ usage_errors() {
   expect_text err "WIDTHxHEIGHTxTHICKNESS"
   expect_exit 2 "$sunder" fracture $wall -o a.glb -o ./a.glb
   expect_text err "twice"
+  for option in --seed --threads --name --report --anchors --set --cell -o; do
+    expect_exit 2 "$sunder" fracture $wall -o a.glb $option ""
+    expect_text err "needs a value"
+  done
+  expect_exit 2 "$sunder" fracture $wall --seed= 3 -o a.glb
+  expect_text err "--seed needs a value"
   expect_exit 2 "$sunder" schema scenes
   expect_files ""
 }
+one_value_each() {  # an option does not take the words after its value
+  cp "$source/data/scenes/facade.json" scene.json
+  expect_exit 2 "$sunder" fracture $wall -o wall.glb scene.json
+  expect_text err '"scene.json" belongs to no option'
+  cmp -s scene.json "$source/data/scenes/facade.json" || fail "the scene is overwritten"
+  expect_exit 0 "$sunder" fracture -o a.svg scene.json -o b.svg
+  expect_exit 0 "$sunder" fracture --set seed=3 scene.json -o a.svg --set walls.0.name=front
+  expect_text err "seed 3"
+  expect_exit 2 "$sunder" fracture $wall --jitter 0.5 0.6 -o a.svg
+  expect_exit 2 "$sunder" fracture $wall --cell 0.4 -o a.svg
+  expect_text err "--cell is given twice"
+  expect_exit 2 "$sunder" fracture $wall --seed 1 --seed 2 -o a.svg
+  expect_text err "--seed is given twice"
+  expect_exit 0 "$sunder" fracture --wall 6x3x0.2 --pattern voronoi-sites --sites 1,1 --sites 4,2 \
+    --opening 1x1@1,1 --opening 1x1@3,1 -o c.svg
+  expect_text err "2 chunks"
+  expect_exit 2 "$sunder" fracture --wall 6x3x0.2 --pattern voronoi-sites --sites 1,1 4,2 -o c.svg
+  expect_files "a.svg b.svg c.svg scene.json"
+}
+bad_values() {  # on the command line: named by their option
+  while IFS='|' read -r words message; do
+    expect_exit 2 "$sunder" fracture $words -o a.glb
+    expect_text err "error: $message"
+  done << 'END'
+--wall 6x3x0.2 --jitter 1.4|--jitter: 1.4 is outside [0, 1]
+--wall 6x3x0.2 --cell inf|--cell: must be a number
+--wall 6x3x0.2 --cell nan|--cell: must be a number
+--wall 6x3x0.2 --cell 0x1|--cell: must be a number
+--wall 6x3x0.2 --cell 1e999|--cell: must be a number
+--wall 6x3x0|--wall: 0 is outside
+--wall 6x-3x0.2|--wall: -3 is outside
+--wall 6x3xinf|--wall 6x3xinf: expected WIDTHxHEIGHTxTHICKNESS
+--wall 6x3x0.2 --opening 0x1@1,1|--opening: 0 is outside
+--wall 6x3x0.2 --opening 1x1|--opening 1x1: expected WxH@X,Y
+--wall 6x3x0.2 --opening 1x1@1,y|--opening 1x1@1,y: expected WxH@X,Y
+--wall 6x3x0.2 --anchors bottom,botom|--anchors: unknown word "botom", did you mean "bottom"?
+--wall 6x3x0.2 --name a/b|--name: a name is 1 to
+--wall 6x3x0.2 --material stone|--material: unknown material "stone"
+--wall 6x3x0.2 --min-cell -1|--min-cell: -1 is outside
+--wall 6x3x0.2 --pattern spiderwep|--pattern: unknown word "spiderwep", did you mean "spiderweb"?
+--wall 6x3x0.2 --pattern spiderweb --impacts 1,1 --min-points 20|--min-points: min_points = 20
+--wall 6x3x0.2 --pattern voronoi-sites --sites 1e9,1|--sites: 1e9 is outside
+--wall 6x3x0.2 --set walls.0.pattern.jitter=2|--set: /walls/0/pattern/jitter: 2 is outside [0, 1]
+END
+  expect_exit 2 "$sunder" fracture "$source/data/scenes/facade.json" --set seed=-1 -o a.glb
+  expect_text err "error: --set: /seed"
+  expect_exit 2 "$sunder" fracture $wall --name $'a\tb\001' -o a.glb
+  expect_text err 'got "a\tb\u0001"'
+  expect_files ""
+}
+number_forms() {  # what people write and JSON refuses means the same number
+  expect_exit 0 "$sunder" fracture --wall 6x3x0.2 --cell 0.3 --jitter 1 --opening 1x2@0.5,0 -o a.glb
+  expect_exit 0 "$sunder" fracture --wall +6x03x.2 --cell 3.e-1 --jitter 1. --opening 1e0x2@.5,-0 \
+    -o b.glb
+  cmp a.glb b.glb || fail "the same wall spelt otherwise is another"
+}
 bad_input() {
-  expect_exit 3 "$sunder" fracture $wall --jitter 1.4 -o a.glb
-  expect_text err "/walls/0/pattern/jitter"
+  echo '{"sunder": 1, "walls": [{"pattern": {"type": "voronoi-grid", "jitter": 1.4}}]}' > bad.json
+  expect_exit 3 "$sunder" fracture bad.json -o a.glb
+  expect_text err "bad.json:1: /walls/0/pattern/jitter"
   expect_exit 3 "$sunder" fracture missing.json -o a.glb
   echo '{"sunder": 1, "walls": [{"thicknes": 1}]}' > bad.json
   expect_exit 3 "$sunder" fracture bad.json -o a.glb
@@ -80,7 +152,8 @@ same_bytes() {
   for n in 1 2 7; do
     expect_exit 0 "$sunder" fracture "$source/data/scenes/room.json" --threads $n -o $n.glb -o $n.obj -o $n.svg
   done
-  expect_exit 0 env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2_Usable,-AVX2 \
+  # Another sin, cos, exp, pow and log of the C library; they differ in last bits.
+  expect_exit 0 env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA \
     "$sunder" fracture "$source/data/scenes/room.json" -o f.glb -o f.obj -o f.svg
   for suffix in glb obj svg; do
     sed -i 's/^mtllib .*//' ./*.obj
@@ -133,21 +206,93 @@ planted_faults() {
   expect_exit 1 "$sunder" check overlap.obj
   expect_text out "overlap"
 }
+unsound_results() {  # a frame too narrow for float32 corners: the volume is off
+  local frame="--wall 6x3x0.2 --opening 5.99x2.99@0,0 --min-cell 0"
+  expect_exit 1 "$sunder" fracture $frame -o a.glb --report a.json --quiet
+  expect_text a.json '"sound": false'
+  expect_text err "NOT SOUND"
+  expect_text err "the volume is"
+  expect_exit 1 "$sunder" fracture $frame --json --quiet
+  [ "$(head -c 1 out)" = "{" ] || fail "faults belong on standard error"
+  expect_text err "the volume is"
+  expect_exit 1 "$sunder" check a.glb
+  expect_text out "the volume is"
+  expect_exit 0 "$sunder" fracture $wall --json
+  grep -q "SOUND" err && fail "faults of a sound asset"
+  return 0
+}
+formats_without_chunks() {
+  expect_exit 0 "$sunder" fracture $wall -o a.stl -o a.ply -o a.obj
+  for file in a.stl a.ply; do
+    expect_exit 0 "$sunder" check $file
+    expect_text out "one solid"
+    grep -q " chunks, \|bonds" out && fail "$file is said to have chunks: $(cat out)"
+  done
+  expect_exit 0 "$sunder" check a.obj
+  expect_text out " chunks, "
+}
+signal_while_writing() {  # signal, pid: sent when the unfinished file is there
+  while kill -0 "$2" 2> /dev/null; do
+    if [ -n "$(find . -name '.sunder-*.tmp')" ]; then
+      kill -"$1" "$2"
+      return
+    fi
+    sleep 0.01
+  done
+  fail "it ended before SIG$1 could be sent: $(cat err)"
+}
 interrupt() {
-  "$sunder" fracture --wall 100x100x0.2 --cell 0.05 -o big.glb --quiet 2> err &
-  local pid=$!
-  sleep 0.4
-  kill -INT $pid
-  wait $pid
-  [ $? -eq 130 ] || fail "exit code after an interrupt"
-  expect_files ""
+  local signal
+  for signal in INT TERM HUP; do
+    "$sunder" fracture --wall 20x20x0.2 --cell 0.05 -o big.glb --quiet 2> err &
+    signal_while_writing $signal $!
+    wait $! 2> /dev/null
+    [ $? -eq $((128 + $(kill -l $signal))) ] || fail "exit code after SIG$signal"
+    expect_files ""
+  done
+  # Under nohup a hang-up is nothing.
+  (trap '' HUP; exec "$sunder" fracture --wall 30x30x0.2 --cell 0.1 -o big.glb --quiet) 2> err &
+  signal_while_writing HUP $!
+  wait $! || fail "a hang-up that is ignored stops the program"
+  expect_files "big.glb"
 }
 same_input() {
   cp "$source/data/scenes/facade.json" scene.json
   expect_exit 2 "$sunder" fracture scene.json -o scene.json
   expect_text err "overwrite"
+  expect_exit 2 "$sunder" fracture scene.json -o a.svg --report ./x/../scene.json
+  expect_text err "overwrite"
+  ln -s scene.json link.json
+  expect_exit 2 "$sunder" fracture scene.json -o a.svg --report link.json
+  expect_text err "overwrite"
+  cmp -s scene.json "$source/data/scenes/facade.json" || fail "the scene is overwritten"
   expect_exit 0 "$sunder" fracture scene.json -o out.svg --set seed=9
   expect_text err "seed 9"
+  expect_exit 0 "$sunder" fracture scene.json -o a.glb
+  cp a.glb before.glb
+  expect_exit 2 "$sunder" check a.glb --report a.glb
+  expect_text err ".json"
+  ln -s a.glb asset.json
+  expect_exit 2 "$sunder" check a.glb --report asset.json
+  expect_text err "overwrite"
+  cmp a.glb before.glb || fail "the asset is overwritten"
+  expect_exit 0 "$sunder" check a.glb --report a.json
+  expect_text a.json '"sound": true'
+}
+same_output() {  # two names of one file
+  mkdir x
+  ln -s x y
+  ln -s a.svg later.svg
+  for other in ./a.svg x/../a.svg "$PWD/a.svg" later.svg; do
+    expect_exit 2 "$sunder" fracture $wall -o a.svg -o "$other"
+    expect_text err "written twice"
+  done
+  expect_exit 2 "$sunder" fracture $wall -o x/r.json --report y/r.json
+  expect_text err "written twice"
+  expect_exit 2 "$sunder" fracture $wall --report r.txt
+  expect_text err "--report r.txt"
+  expect_files "later.svg x y"
+  expect_exit 0 "$sunder" fracture $wall -o a.svg -o x/a.svg
 }
 schemas() {
   for which in scene material report; do
