@@ -10,6 +10,7 @@
 #include "fracture/chunk_mesh.hpp"
 #include "fracture/measure.hpp"
 #include "fracture/voronoi.hpp"
+#include "meshing/error.hpp"
 #include "meshing/random.hpp"
 #include "peers.hpp"
 
@@ -35,14 +36,15 @@ Wall varied_wall(std::uint64_t seed, double jitter) {
   wall.pattern = seed % 3 == 0 ? PatternParams(QuadGridParams{cell, jitter, "quads"})
                                : PatternParams(VoronoiGridParams{cell, jitter});
   if (seed % 2 == 0)
-    wall.region.openings = {rectangle({0.31 * size, 0.2 * size},
-                                      wall.region.outline[0] + Vec2{0.25 * size, 0})};
+    wall.region.openings = {
+        rectangle({0.31 * size, 0.2 * size}, wall.region.outline[0] + Vec2{0.25 * size, 0})};
   return wall;
 }
 
 void sweep_walls() {
-  std::printf("| jitter | walls | chunks | volume in memory | volume in files | unpaired edges | "
-              "open | not manifold | unmatched | overlaps |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| jitter | walls | chunks | volume in memory | volume in files | unpaired edges | "
+      "open | not manifold | unmatched | overlaps |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const double jitter : {0.0, 0.3, 0.66, 0.9, 1.0}) {
     double in_memory = 0, in_files = 0;
     std::uint64_t unpaired = 0;
@@ -51,8 +53,8 @@ void sweep_walls() {
       const WallAsset asset = fracture_wall(varied_wall(seed, jitter), 2400, {.seed = seed});
       double volume = 0;
       for (const MassProperties& chunk : asset.chunks) volume += chunk.volume;
-      in_memory = std::max(in_memory,
-                           std::abs(volume - asset.volume_expected) / asset.volume_expected);
+      in_memory =
+          std::max(in_memory, std::abs(volume - asset.volume_expected) / asset.volume_expected);
       unpaired += check(asset.pattern).unpaired_edges;
       const RenderMeshes meshes = render_meshes(asset);
       const Soundness s = measure({soup_of(asset, meshes)});
@@ -71,9 +73,53 @@ void sweep_walls() {
   }
 }
 
+// Openings on a coarse decimal grid, so that they touch, nearly touch, share and overlap edges with
+// each other, the border and the cells: what a drawing never has and a careless script makes.
+Wall touching_wall(std::uint64_t seed) {
+  std::uint64_t draw = 0;
+  const auto below = [&](std::uint64_t n) {
+    return static_cast<double>(random_bits(seed, draw++) % n);
+  };
+  constexpr double kUnits[] = {0.25, 0.3, 0.1, 1.0 / 3};
+  const double unit = kUnits[static_cast<int>(below(4))];
+  const double width = 4 + below(9), height = 4 + below(9);
+  Wall wall;
+  wall.region.outline = rectangle({width * unit, height * unit});
+  for (double left = 1 + below(7); left > 0; --left) {
+    const double x = below(static_cast<std::uint64_t>(width)),
+                 y = below(static_cast<std::uint64_t>(height));
+    const double w = 1 + below(static_cast<std::uint64_t>(std::min(4.0, width - x)));
+    const double h = 1 + below(static_cast<std::uint64_t>(std::min(4.0, height - y)));
+    Loop opening = rectangle({w * unit, h * unit}, {x * unit, y * unit});
+    if (below(2) > 0) opening.erase(opening.begin() + static_cast<int>(below(4)));
+    wall.region.openings.push_back(opening);
+    try {
+      make_lattice_region(wall.region, make_lattice({}, {width * unit, height * unit}), "wall");
+    } catch (const Error&) {
+      wall.region.openings.pop_back();
+    }
+  }
+  const double cell = unit * (0.5 + 0.5 * below(6)), jitter = 0.5 * below(3);
+  wall.pattern = below(2) > 0 ? PatternParams(VoronoiGridParams{cell, jitter})
+                              : PatternParams(QuadGridParams{cell, 0.9 * jitter, "quads"});
+  return wall;
+}
+
+void sweep_touching() {
+  int unsound = 0;
+  constexpr int kWalls = 4000;
+  for (std::uint64_t seed = 1; seed <= kWalls; ++seed) {
+    const WallAsset asset = fracture_wall(touching_wall(seed), 2400, {.seed = seed});
+    const RenderMeshes meshes = render_meshes(asset);
+    unsound += !measure({soup_of(asset, meshes)}).is_sound();
+  }
+  std::printf("\n| walls with touching openings | not sound in float32 |\n|---|---|\n| %d | %d |\n",
+              kWalls, unsound);
+}
+
 double polygon_area(const Polygons& cells, std::size_t c) {
-  return std::abs(area(std::span(cells.corners)
-                           .subspan(cells.begin[c], cells.begin[c + 1] - cells.begin[c])));
+  return std::abs(
+      area(std::span(cells.corners).subspan(cells.begin[c], cells.begin[c + 1] - cells.begin[c])));
 }
 
 // Largest difference between the sorted areas of both, relative to the mean cell: the peers give
@@ -95,8 +141,10 @@ double area_difference(const Pattern& pattern, const Lattice& lattice, const Pol
 }
 
 void compare_peers() {
-  std::printf("\n| 100 × 100 cells, jitter | certified | exact | worst area against CGAL | against voro++ |\n"
-              "|---|---|---|---|---|\n");
+  std::printf(
+      "\n| 100 × 100 cells, jitter | certified | exact | worst area against CGAL | against voro++ "
+      "|\n"
+      "|---|---|---|---|---|\n");
   for (const double jitter : {1.0, 0.9, 0.66, 0.3}) {
     const Sites sites = jittered_sites(make_grid({}, {100, 100}, 1), jitter, 1);
     VoronoiStats stats;
@@ -122,8 +170,9 @@ bool leaves_window(const Pattern& pattern, const Sites& sites, std::uint32_t c) 
 }
 
 void count_windows() {
-  std::printf("\n| four walls of 1000 × 1000 cells, jitter | cells a ±2 window gets wrong | expected |\n"
-              "|---|---|---|\n");
+  std::printf(
+      "\n| four walls of 1000 × 1000 cells, jitter | cells a ±2 window gets wrong | expected |\n"
+      "|---|---|---|\n");
   const struct {
     double jitter;
     const char* expected;
@@ -162,18 +211,21 @@ void add_moments(Moments& m, const Sites& sites, double margin) {
 void print_moments(const Moments& m, const char* name, const char* expected) {
   const double mean = m.a1 / m.count, sides = m.n1 / m.count;
   std::printf("| %s | %.5f | %.3f | %.3f | %s |\n", name,
-              (m.a2 / m.count - mean * mean) / (mean * mean), sides,
-              m.n2 / m.count - sides * sides, expected);
+              (m.a2 / m.count - mean * mean) / (mean * mean), sides, m.n2 / m.count - sides * sides,
+              expected);
 }
 
 void statistics() {
-  std::printf("\n| 4e6 cells | var A / A² | mean sides | var sides | known: var A, var sides |\n"
-              "|---|---|---|---|---|\n");
+  std::printf(
+      "\n| 4e6 cells | var A / A² | mean sides | var sides | known: var A, var sides |\n"
+      "|---|---|---|---|---|\n");
   const struct {
     double jitter;
     const char *name, *known;
-  } rows[] = {{0.25, "grid, jitter 0.25", ".00452, .835"}, {0.5, "grid, jitter 0.5", ".01629, .825"},
-              {0.75, "grid, jitter 0.75", ".03466, .836"}, {0.9, "grid, jitter 0.9", ".0494, .952"},
+  } rows[] = {{0.25, "grid, jitter 0.25", ".00452, .835"},
+              {0.5, "grid, jitter 0.5", ".01629, .825"},
+              {0.75, "grid, jitter 0.75", ".03466, .836"},
+              {0.9, "grid, jitter 0.9", ".0494, .952"},
               {1.0, "grid, jitter 1", ".0609, 1.087"}};
   std::uint64_t seed = 100;
   for (const auto& row : rows) {
@@ -192,6 +244,7 @@ void statistics() {
 
 int main() {
   sweep_walls();
+  sweep_touching();
   compare_peers();
   count_windows();
   statistics();

@@ -73,7 +73,8 @@ void bench_size(double cells, const std::filesystem::path& folder) {
   asset.walls.resize(1);
   const FractureParams one{.seed = 1, .threads = 1};
   const double pattern = least_seconds(runs, [&] { make_pattern(wall, one); });
-  const double whole = least_seconds(runs, [&] { asset.walls[0] = fracture_wall(wall, 2400, one); });
+  const double whole =
+      least_seconds(runs, [&] { asset.walls[0] = fracture_wall(wall, 2400, one); });
   const double mesh = least_seconds(runs, [&] { render_meshes(asset.walls[0], 1); });
   const MeshedAsset meshed = mesh_asset(asset, 1);
   const auto file = folder / "bench.glb";
@@ -95,18 +96,20 @@ void bench_size(double cells, const std::filesystem::path& folder) {
   double sum = 0;
   const int hits = static_cast<int>(std::min(2000.0, cells / 4));
   const double hit = seconds([&] {
-    for (int i = 0; i < hits; ++i) {
-      const auto cell = static_cast<std::uint32_t>(random_bits(5, static_cast<std::uint64_t>(i)) %
-                                                   p.cell_count());
-      sum += emit_faces(p, state.break_cells(std::span(&cell, 1)), buffer);
-    }
-  }) / hits;
+                       for (int i = 0; i < hits; ++i) {
+                         const auto cell = static_cast<std::uint32_t>(
+                             random_bits(5, static_cast<std::uint64_t>(i)) % p.cell_count());
+                         sum += emit_faces(p, state.break_cells(std::span(&cell, 1)), buffer);
+                       }
+                     }) /
+                     hits;
   const double count = p.cell_count();
   const auto ns = [&](double s) { return 1e9 * s / count; };
-  std::printf("| %.0e | %.0f | %.0f | %.0f | %.0f | %.0f | %.1f | %.1f | %.0f | %.0f | %.2f | %.1e |\n", cells,
-              ns(pattern), ns(whole - pattern), ns(mesh), ns(whole + mesh), ns(write),
-              1e3 * end_to_end, 1e3 * two_threads, size / count, peak_megabytes(), 1e6 * hit,
-              (whole + mesh) / hit + 0 * sum);
+  std::printf(
+      "| %.0e | %.0f | %.0f | %.0f | %.0f | %.0f | %.1f | %.1f | %.0f | %.0f | %.2f | %.1e |\n",
+      cells, ns(pattern), ns(whole - pattern), ns(mesh), ns(whole + mesh), ns(write),
+      1e3 * end_to_end, 1e3 * two_threads, size / count, peak_megabytes(), 1e6 * hit,
+      (whole + mesh) / hit + 0 * sum);
   std::fflush(stdout);
 }
 
@@ -141,9 +144,10 @@ int main(int argc, char** argv) {
   std::vector<double> sizes;
   for (int i = 2; i < argc; ++i) sizes.push_back(std::strtod(argv[i], nullptr));
   if (sizes.empty()) sizes = {1e2, 1e3, 1e4, 1e5, 1e6};
-  std::printf("| chunks | pattern ns | mass + bonds ns | meshes ns | in memory ns | GLB ns | "
-              "seed to file ms | 2 threads ms | bytes | peak MB | one hit us | rebuild / hit |\n"
-              "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| chunks | pattern ns | mass + bonds ns | meshes ns | in memory ns | GLB ns | "
+      "seed to file ms | 2 threads ms | bytes | peak MB | one hit us | rebuild / hit |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   std::fflush(stdout);
   for (const double cells : sizes) {
     const pid_t child = fork();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
-
-#include <unistd.h>
 
 #include "cli/run.hpp"
 #include "io/output.hpp"

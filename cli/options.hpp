@@ -14,14 +14,14 @@ enum class Verb { fracture, check, schema };
 /// The command line, as given.
 struct Options {
   Verb verb = Verb::fracture;
-  std::vector<std::filesystem::path> inputs;   ///< scene, or files to check
+  std::vector<std::filesystem::path> inputs;  ///< scene, or files to check
   std::string schema = "scene";
   std::string wall_scene;                      ///< scene text made from --wall …; empty: none
   std::vector<std::filesystem::path> outputs;  ///< -o
   std::filesystem::path report;                ///< --report; empty: none
   std::vector<std::string> overrides;          ///< --set
   std::optional<std::uint64_t> seed;
-  int threads = 0;                             ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many as the machine has
   bool json = false, quiet = false, allow_outside = false;
   bool verbose = false;
 };

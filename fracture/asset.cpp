@@ -66,7 +66,10 @@ ExactCell exact_quad_cell(const QuadGrid& quads, std::uint32_t cell) {
 class PatternMaker {
  public:
   PatternMaker(const Wall& wall, const FractureParams& params, FractureStats& stats)
-      : wall_(wall), params_(params), stats_(stats), seed_(wall_seed(params.seed, wall.name)),
+      : wall_(wall),
+        params_(params),
+        stats_(stats),
+        seed_(wall_seed(params.seed, wall.name)),
         box_(bounding_box(wall.region.outline)) {}
 
   WallPattern operator()(const VoronoiGridParams& p) {
@@ -77,8 +80,8 @@ class PatternMaker {
     return voronoi_of(given_sites(make_lattice(box_.low, size()), p.sites));
   }
   WallPattern operator()(const VoronoiRandomParams& p) {
-    return voronoi_of(random_sites(make_lattice(box_.low, size()),
-                                   static_cast<std::uint32_t>(p.count), seed_));
+    return voronoi_of(
+        random_sites(make_lattice(box_.low, size()), static_cast<std::uint32_t>(p.count), seed_));
   }
   WallPattern operator()(const VoronoiFocusParams& p) {
     return voronoi_of(focused_sites(make_lattice(box_.low, size()), p.points,
@@ -185,8 +188,8 @@ MassProperties prism_properties(const Pattern& pattern, std::uint32_t cell, doub
   yy = thickness * (yy / 12 - area * c.y * c.y);
   xy = thickness * (xy / 24 - area * c.x * c.y);
   const double zz = area * thickness * thickness * thickness / 12;
-  return {area * thickness, {base.x + c.x, base.y + c.y, 0},
-          {yy + zz, xx + zz, xx + yy, -xy, 0, 0}};
+  return {
+      area * thickness, {base.x + c.x, base.y + c.y, 0}, {yy + zz, xx + zz, xx + yy, -xy, 0, 0}};
 }
 
 std::vector<std::uint8_t> anchored_edges(const Wall& wall, const LatticeRegion& region) {
@@ -222,8 +225,8 @@ WallPattern make_pattern(const Wall& given, const FractureParams& params, Fractu
   const Vec2 size = bounding_box(wall.region.outline).high;
   const bool plain = result.pattern.all_convex;  // neither cut nor cracked: no edge is too short
   if (!plain)
-    result.pattern = join_near_vertices(
-        std::move(result.pattern), std::min(kNearest * std::max(size.x, size.y), 1e-3 * cell));
+    result.pattern = join_near_vertices(std::move(result.pattern),
+                                        std::min(kNearest * std::max(size.x, size.y), 1e-3 * cell));
   const double least = wall.min_cell >= 0 ? wall.min_cell : kSliverSize * cell;
   result.pattern = merge_slivers(std::move(result.pattern), least * least, &s.slivers_merged);
   if (!plain || s.slivers_merged > 0) result.pattern = split_pinches(std::move(result.pattern));
@@ -249,7 +252,7 @@ WallAsset fracture_wall(const Wall& given, double density, const FractureParams&
   });
   report(0.8);
   asset.bonds = find_bonds(asset.pattern, wall.thickness, anchored_edges(wall, asset.region));
-  asset.volume_expected = area(wall.region) * wall.thickness;
+  asset.volume_expected = area(asset.region) * wall.thickness;
   report(1);
   return asset;
 }

@@ -33,7 +33,10 @@ Bond make_bond(std::uint32_t a, std::uint32_t b, const Contact& contact, double 
   const Vec2 along = closed ? contact.longest : contact.vector;
   const double size = length(along);
   const Vec2 centre = (1 / contact.length) * contact.moment;
-  return {a, b, contact.length * thickness, {centre.x, centre.y, 0},
+  return {a,
+          b,
+          contact.length * thickness,
+          {centre.x, centre.y, 0},
           {along.y / size, -along.x / size, 0}};
 }
 
@@ -46,8 +49,10 @@ std::vector<Bond> find_bonds(const Pattern& pattern, double thickness,
   std::vector<Contact> contacts;
   const auto collect = [&](std::vector<Contact>& into, const Contact& edge) {
     const auto it = std::ranges::find(into, edge.other, &Contact::other);
-    if (it == into.end()) into.push_back(edge);
-    else add(*it, edge);
+    if (it == into.end())
+      into.push_back(edge);
+    else
+      add(*it, edge);
   };
   std::vector<Contact> sides;
   for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell) {

@@ -64,8 +64,8 @@ BreakableWall::Change BreakableWall::break_cells(std::span<const std::uint32_t> 
       }
       const Across across = pattern_.across[k];
       if (across.is_border() || !intact_[across.cell()]) return;
-      const std::uint32_t reverse = find_corner(pattern_, across.cell(), cell,
-                                                pattern_.corners[next], pattern_.corners[k]);
+      const std::uint32_t reverse =
+          find_corner(pattern_, across.cell(), cell, pattern_.corners[next], pattern_.corners[k]);
       shown_[reverse] = 1;
       change.shown.push_back(reverse);
       ++change.cells_touched;
@@ -75,7 +75,8 @@ BreakableWall::Change BreakableWall::break_cells(std::span<const std::uint32_t> 
   return change;
 }
 
-std::vector<std::uint8_t> shown_faces(const Pattern& pattern, std::span<const std::uint8_t> intact) {
+std::vector<std::uint8_t> shown_faces(const Pattern& pattern,
+                                      std::span<const std::uint8_t> intact) {
   std::vector<std::uint8_t> shown(pattern.corners.size(), 0);
   for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell)
     for (std::uint32_t k = pattern.cell_begin[cell]; k < pattern.cell_begin[cell + 1]; ++k) {

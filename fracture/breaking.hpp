@@ -10,9 +10,9 @@
 
 namespace sunder {
 
-/// Which cells of a wall still stand, and which faces that opens. A corner of the pattern stands for
-/// the face over its edge; the face shows when its own cell is intact and the cell across is broken
-/// (border faces always show while their cell is intact and are not listed).
+/// Which cells of a wall still stand, and which faces that opens. A corner of the pattern stands
+/// for the face over its edge; the face shows when its own cell is intact and the cell across is
+/// broken (border faces always show while their cell is intact and are not listed).
 ///
 /// The pattern must outlive the object. Memory: one byte per cell and per corner.
 class BreakableWall {
@@ -26,8 +26,9 @@ class BreakableWall {
     std::vector<std::uint32_t> hidden;
     std::uint64_t cells_touched = 0;  ///< cells looked at: the broken ones and their neighbours
   };
-  /// Breaks the cells that are still intact among `cells`. O(corners of those and their neighbours),
-  /// whatever the size of the wall; the state equals that of a full rebuild (shown_faces).
+  /// Breaks the cells that are still intact among `cells`. O(corners of those and their
+  /// neighbours), whatever the size of the wall; the state equals that of a full rebuild
+  /// (shown_faces).
   Change break_cells(std::span<const std::uint32_t> cells);
 
   bool is_intact(std::uint32_t cell) const { return intact_[cell] != 0; }
@@ -49,7 +50,8 @@ std::vector<std::uint8_t> shown_faces(const Pattern& pattern, std::span<const st
 std::uint32_t cell_at(const Pattern& pattern, Vec2 point);
 
 /// The cells that a disc meets, found from `start` (the cell of its centre) across edges that the
-/// disc meets; sorted. What only an opening connects is not found. Touches only cells near the disc.
+/// disc meets; sorted. What only an opening connects is not found. Touches only cells near the
+/// disc.
 std::vector<std::uint32_t> cells_near(const Pattern& pattern, std::uint32_t start, Vec2 centre,
                                       double radius);
 

@@ -111,7 +111,8 @@ std::vector<Triangle> face_triangles(const Pattern& pattern, std::uint32_t cell,
     const Vec2 a = flat.places[i - 1] - flat.places[0], b = flat.places[i] - flat.places[0];
     clear = cross(a, b) > 1e-12 * length(a) * length(b);
   }
-  if (clear && is_strictly_convex(pattern, cell)) return fan(static_cast<std::uint32_t>(flat.places.size()));
+  if (clear && is_strictly_convex(pattern, cell))
+    return fan(static_cast<std::uint32_t>(flat.places.size()));
   return triangulate_cell(flat);
 }
 
@@ -189,7 +190,9 @@ struct VertexWriter {
 class RenderMesher {
  public:
   explicit RenderMesher(const WallAsset& asset)
-      : asset_(asset), pattern_(asset.pattern), half_(static_cast<float>(asset.wall.thickness / 2)) {
+      : asset_(asset),
+        pattern_(asset.pattern),
+        half_(static_cast<float>(asset.wall.thickness / 2)) {
     points_.reserve(pattern_.vertices.size());
     for (const Vec2& v : pattern_.vertices)
       points_.push_back({static_cast<float>(v.x), static_cast<float>(v.y)});
@@ -265,7 +268,8 @@ class RenderMesher {
       const LoopRange loop = range(c);
       corners = loop.size();
       std::uint32_t borders = 0;
-      for (std::uint32_t k = loop.begin; k < loop.end; ++k) borders += pattern_.across[k].is_border();
+      for (std::uint32_t k = loop.begin; k < loop.end; ++k)
+        borders += pattern_.across[k].is_border();
       result_.outer[c] = plain_list(corners, borders, true);
       result_.inner[c] = plain_list(corners, borders, false);
     } else {

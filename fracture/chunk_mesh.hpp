@@ -33,8 +33,8 @@ struct IndexList {
 
 /// Meshes of all chunks of a wall, as renderers want them: float32, flat normals, texture
 /// coordinates, vertices not shared between faces. Chunk c owns vertices vertex_begin[c] …
-/// vertex_begin[c+1], first those of its outer faces (front, back, border), then the inner ones; its
-/// triangles are outer[c] and inner[c], indices relative to vertex_begin[c].
+/// vertex_begin[c+1], first those of its outer faces (front, back, border), then the inner ones;
+/// its triangles are outer[c] and inner[c], indices relative to vertex_begin[c].
 ///
 /// Positions are the doubles rounded once per shared vertex, so neighbours' corners are the same
 /// bits. An edge whose ends round to the same float is dropped in both cells that share it. Texture
@@ -46,9 +46,9 @@ struct RenderMeshes {
   RawVector<float> uvs;        ///< 2 per vertex
   std::vector<std::uint32_t> vertex_begin{0};
   std::vector<std::uint32_t> indices;
-  std::vector<IndexList> lists;          ///< distinct index lists, in order of first use
-  std::vector<std::uint32_t> outer;      ///< per chunk: its list in `lists`
-  std::vector<std::uint32_t> inner;      ///< the same; kNoList: a chunk without inner faces
+  std::vector<IndexList> lists;      ///< distinct index lists, in order of first use
+  std::vector<std::uint32_t> outer;  ///< per chunk: its list in `lists`
+  std::vector<std::uint32_t> inner;  ///< the same; kNoList: a chunk without inner faces
   std::uint64_t edges_dropped = 0;
 
   static constexpr std::uint32_t kNoList = 0xFFFFFFFFu;

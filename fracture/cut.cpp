@@ -13,7 +13,10 @@ namespace {
 class PatternCutter {
  public:
   PatternCutter(const Pattern& pattern, const ExactCells& exact, const LatticeRegion& region)
-      : pattern_(pattern), exact_(exact), region_(region), touching_(pattern.cell_count()),
+      : pattern_(pattern),
+        exact_(exact),
+        region_(region),
+        touching_(pattern.cell_count()),
         status_(pattern.cell_count(), kUnknown) {
     find_first_corners();
   }
@@ -80,11 +83,13 @@ class PatternCutter {
 
   std::span<const Across> across_of(std::uint32_t cell) const {
     return std::span(pattern_.across)
-        .subspan(pattern_.cell_begin[cell], pattern_.cell_begin[cell + 1] - pattern_.cell_begin[cell]);
+        .subspan(pattern_.cell_begin[cell],
+                 pattern_.cell_begin[cell + 1] - pattern_.cell_begin[cell]);
   }
   std::span<const std::uint32_t> corners_of(std::uint32_t cell) const {
     return std::span(pattern_.corners)
-        .subspan(pattern_.cell_begin[cell], pattern_.cell_begin[cell + 1] - pattern_.cell_begin[cell]);
+        .subspan(pattern_.cell_begin[cell],
+                 pattern_.cell_begin[cell + 1] - pattern_.cell_begin[cell]);
   }
 
   void cut_touched_cells() {
@@ -96,7 +101,8 @@ class PatternCutter {
         status_[cell] = kCut;
         ++(result.parts.empty() ? emptied_count_ : cut_count_);
       }
-      for (const CutCell::OnBoundary& p : result.on_boundary) on_boundary_.insert({p.key, {p.edge, p.t}});
+      for (const CutCell::OnBoundary& p : result.on_boundary)
+        on_boundary_.insert({p.key, {p.edge, p.t}});
       cut_[cell] = std::move(result);
     }
   }
@@ -158,7 +164,8 @@ class PatternCutter {
   void copy_cell(Pattern& result, std::uint32_t cell) {
     for (std::uint32_t k = pattern_.cell_begin[cell]; k < pattern_.cell_begin[cell + 1]; ++k) {
       const std::uint32_t v = pattern_.corners[k];
-      const std::uint32_t l = k + 1 == pattern_.cell_begin[cell + 1] ? pattern_.cell_begin[cell] : k + 1;
+      const std::uint32_t l =
+          k + 1 == pattern_.cell_begin[cell + 1] ? pattern_.cell_begin[cell] : k + 1;
       result.corners.push_back(vertex_of(result, v));
       result.across.push_back(translate(pattern_.across[k], {NodeKey::vertex, {v}},
                                         {NodeKey::vertex, {pattern_.corners[l]}}));
@@ -172,8 +179,8 @@ class PatternCutter {
       if (l > 0) result.hole_begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
       for (std::size_t s = 0; s < loop.size(); ++s) {
         result.corners.push_back(vertex_of(result, loop[s].from));
-        result.across.push_back(translate(loop[s].across, loop[s].from,
-                                          loop[s + 1 == loop.size() ? 0 : s + 1].from));
+        result.across.push_back(
+            translate(loop[s].across, loop[s].from, loop[s + 1 == loop.size() ? 0 : s + 1].from));
       }
     }
     finish_cell(result, cell);

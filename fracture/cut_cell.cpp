@@ -31,11 +31,17 @@ struct EdgePoint {
   std::uint32_t node;
 };
 
-LatticePoint direction_of(const LatticeLine& line) { return {-line.b, line.a}; }
+LatticePoint direction_of(const LatticeLine& line) {
+  return {-line.b, line.a};
+}
 
-LatticePoint reversed(LatticePoint d) { return {-d.x, -d.y}; }
+LatticePoint reversed(LatticePoint d) {
+  return {-d.x, -d.y};
+}
 
-int sign_of(Int128 value) { return (value > 0) - (value < 0); }
+int sign_of(Int128 value) {
+  return (value > 0) - (value < 0);
+}
 
 // Counter-clockwise order by angle from the positive x axis, exact.
 bool precedes(LatticePoint p, LatticePoint q) {
@@ -110,7 +116,8 @@ class CellCutter {
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     for (const std::uint32_t id : ids) {
       const LatticePoint at = relative(id);
-      if (std::ranges::all_of(cell_.lines, [&](const LatticeLine& l) { return side_of(l, at) <= 0; }))
+      if (std::ranges::all_of(cell_.lines,
+                              [&](const LatticeLine& l) { return side_of(l, at) <= 0; }))
         corners_.push_back({id, at, node({NodeKey::corner, {id}}, crossing_at(at))});
     }
   }
@@ -133,8 +140,7 @@ class CellCutter {
     const auto at = std::ranges::find_if(corners_, [&](const Corner& c) {
       return 2 * c.at.x * v.w == v.x && 2 * c.at.y * v.w == v.y;
     });
-    vertex_nodes_.push_back(at != corners_.end() ? at->node
-                                                 : node({NodeKey::vertex, {vertex}}, v));
+    vertex_nodes_.push_back(at != corners_.end() ? at->node : node({NodeKey::vertex, {vertex}}, v));
   }
 
   void place_corners_on_edges() {
@@ -176,7 +182,8 @@ class CellCutter {
     const Vec2 p = rounded(nodes_[n].place);
     const double along =
         (p.x - static_cast<double>(a.x)) * dx + (p.y - static_cast<double>(a.y)) * dy;
-    result_.on_boundary.push_back({nodes_[n].key, f, std::clamp(along / (dx * dx + dy * dy), 0., 1.)});
+    result_.on_boundary.push_back(
+        {nodes_[n].key, f, std::clamp(along / (dx * dx + dy * dy), 0., 1.)});
   }
 
   void add_boundary_edge(std::uint32_t f) {
@@ -221,7 +228,8 @@ class CellCutter {
     for (const Corner* c : stops) chain.push_back(c->node);
     chain.push_back(end_node(last, exit));
     chain.erase(std::unique(chain.begin(), chain.end()), chain.end());
-    for (std::size_t i = 0; i + 1 < chain.size(); ++i) add_chord_part(chain[i], chain[i + 1], d, line, f);
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+      add_chord_part(chain[i], chain[i + 1], d, line, f);
   }
 
   void add_chord_part(std::uint32_t from, std::uint32_t to, LatticePoint d, const LatticeLine& line,
@@ -247,10 +255,13 @@ class CellCutter {
       const std::size_t begin = half_edges_.size();
       const LatticePoint d = direction_of(cell_.lines[k]);
       for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-        half_edges_.push_back({.from = chain[i], .to = chain[i + 1], .direction = d,
-                               .line = cell_.lines[k], .across = across_[k]});
-        HalfEdge back{.from = chain[i + 1], .to = chain[i], .direction = reversed(d),
-                      .line = cell_.lines[k]};
+        half_edges_.push_back({.from = chain[i],
+                               .to = chain[i + 1],
+                               .direction = d,
+                               .line = cell_.lines[k],
+                               .across = across_[k]});
+        HalfEdge back{
+            .from = chain[i + 1], .to = chain[i], .direction = reversed(d), .line = cell_.lines[k]};
         back.exterior = true;
         half_edges_.push_back(back);
       }
@@ -347,12 +358,12 @@ class CellCutter {
       if (outer.size() == 1) return i;
       // A hole may touch the loop that it lies in, or one beside it, but not everywhere.
       const auto is_apart = [&](std::uint32_t h) {
-        return std::ranges::none_of(outer[i], [&](std::uint32_t e) {
-          return half_edges_[e].from == half_edges_[h].from;
-        });
+        return std::ranges::none_of(
+            outer[i], [&](std::uint32_t e) { return half_edges_[e].from == half_edges_[h].from; });
       };
       const auto free = std::ranges::find_if(hole, is_apart);
-      if (free != hole.end() && contains(outer[i], relative(nodes_[half_edges_[*free].from].key.ids[0])))
+      if (free != hole.end() &&
+          contains(outer[i], relative(nodes_[half_edges_[*free].from].key.ids[0])))
         return i;
     }
     assert(false && "every hole lies in a part");
@@ -365,7 +376,8 @@ class CellCutter {
     bool inside = false;
     for (const std::uint32_t h : loop) {
       const HalfEdge& e = half_edges_[h];
-      if ((side_of(vertical, nodes_[e.from].place) > 0) == (side_of(vertical, nodes_[e.to].place) > 0))
+      if ((side_of(vertical, nodes_[e.from].place) > 0) ==
+          (side_of(vertical, nodes_[e.to].place) > 0))
         continue;
       inside ^= side_of(e.line, at) * (e.line.b > 0 ? 1 : -1) < 0;
     }

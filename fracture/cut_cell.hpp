@@ -46,8 +46,8 @@ struct CutCell {
   std::vector<OnBoundary> on_boundary;
 };
 
-/// What the cell and the boundary edges that touch it make of each other. `across`, `vertices` as in
-/// the pattern; `first_at[k]` is the first boundary corner at corner k's place.
+/// What the cell and the boundary edges that touch it make of each other. `across`, `vertices` as
+/// in the pattern; `first_at[k]` is the first boundary corner at corner k's place.
 CutCell cut_cell(std::uint32_t id, const ExactCell& cell, std::span<const Across> across,
                  std::span<const std::uint32_t> vertices, const LatticeRegion& region,
                  std::span<const std::uint32_t> first_at, std::span<const std::uint32_t> edges);

@@ -92,8 +92,8 @@ class WallMeasure {
   }
 
   // Crack faces all contain the direction of the wall's thickness: it is perpendicular to any two
-  // of them that are not parallel. With fewer, it is the direction of most of the outer area that is
-  // left to choose from. Looks at some of the chunks only.
+  // of them that are not parallel. With fewer, it is the direction of most of the outer area that
+  // is left to choose from. Looks at some of the chunks only.
   void choose_front() {
     std::vector<Vec3> cracks, outer;  // unit normals; area vectors, one per direction
     const std::uint32_t step = 1 + wall_.chunk_count / 64;
@@ -108,15 +108,14 @@ class WallMeasure {
           add_direction(outer, n);
       }
     }
+    if (is_axis({0, 0, 1}, cracks, outer)) return;  // the frame that walls are written in
     Vec3 axis;
     for (const Vec3& crack : cracks)
       if (const Vec3 n = cross(cracks[0], crack); length(n) > length(axis)) axis = n;
     if (length(axis) < 1e-3) {
       axis = {};
       for (const Vec3& n : outer)
-        if ((cracks.empty() || std::abs(dot(n, cracks[0])) < 1e-3 * length(n)) &&
-            length(n) > length(axis))
-          axis = n;
+        if (is_axis((1 / length(n)) * n, cracks, outer) && length(n) > length(axis)) axis = n;
     }
     if (!(length(axis) > 0)) return;
     normal_ = (1 / length(axis)) * axis;
@@ -127,6 +126,20 @@ class WallMeasure {
     right_ = cross(std::abs(normal_.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal_);
     right_ = (1 / length(right_)) * right_;
     up_ = cross(normal_, right_);
+  }
+
+  // Whether all cracks contain the direction and every outer face either contains or faces it.
+  static bool is_axis(Vec3 axis, const std::vector<Vec3>& cracks, const std::vector<Vec3>& outer) {
+    constexpr double kTilt = 1e-4;
+    bool faced = false;
+    for (const Vec3& n : cracks)
+      if (std::abs(dot(n, axis)) > kTilt) return false;
+    for (const Vec3& n : outer) {
+      const double share = std::abs(dot(n, axis)) / length(n);
+      if (share > kTilt && share < 1 - kTilt) return false;
+      faced |= share >= 1 - kTilt;
+    }
+    return faced;
   }
 
   static void add_direction(std::vector<Vec3>& sums, Vec3 n) {
@@ -146,7 +159,8 @@ class WallMeasure {
 
   void measure_chunk(std::uint32_t c, const SoupChunk& chunk) {
     ids_.resize(chunk.positions.size() / 3);
-    for (std::size_t v = 0; v < ids_.size(); ++v) ids_[v] = points_.id(chunk.positions.data() + 3 * v);
+    for (std::size_t v = 0; v < ids_.size(); ++v)
+      ids_[v] = points_.id(chunk.positions.data() + 3 * v);
     const std::size_t count = chunk.triangles.size() / 3;
     result_.triangles += count;
     edges_.clear();
@@ -155,10 +169,10 @@ class WallMeasure {
     for (std::size_t t = 0; t < count; ++t) {
       const std::uint32_t* v = chunk.triangles.data() + 3 * t;
       const std::array<std::uint32_t, 3> id{ids_[v[0]], ids_[v[1]], ids_[v[2]]};
-      for (int i = 0; i < 3; ++i)
-        edges_.push_back(std::uint64_t{id[i]} << 32 | id[(i + 1) % 3]);
+      for (int i = 0; i < 3; ++i) edges_.push_back(std::uint64_t{id[i]} << 32 | id[(i + 1) % 3]);
       volume += dot(point(chunk, v[0]) - base,
-                    cross(point(chunk, v[1]) - base, point(chunk, v[2]) - base)) / 6;
+                    cross(point(chunk, v[1]) - base, point(chunk, v[2]) - base)) /
+                6;
       add_to_hash(chunk, v);
       if (!is_outer(chunk, t)) add_crack(id, c);
     }
@@ -204,9 +218,8 @@ class WallMeasure {
   }
 
   void match_cracks() {
-    std::ranges::sort(cracks_, {}, [](const CrackTriangle& t) {
-      return std::tuple(t.points, t.even, t.chunk);
-    });
+    std::ranges::sort(cracks_, {},
+                      [](const CrackTriangle& t) { return std::tuple(t.points, t.even, t.chunk); });
     for (std::size_t i = 0; i < cracks_.size();) {
       std::size_t end = i;
       while (end < cracks_.size() && cracks_[end].points == cracks_[i].points) ++end;
@@ -228,7 +241,8 @@ class WallMeasure {
       for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 p = point(chunk, chunk.triangles[3 * t + i]);
         front.at[i] = {dot(p, right_), dot(p, up_)};
-        if (!std::isfinite(front.at[i].x + front.at[i].y)) return;  // the volume is not finite either
+        if (!std::isfinite(front.at[i].x + front.at[i].y))
+          return;  // the volume is not finite either
         low = {std::min(low.x, front.at[i].x), std::min(low.y, front.at[i].y)};
         high = {std::max(high.x, front.at[i].x), std::max(high.y, front.at[i].y)};
       }
@@ -269,8 +283,9 @@ class WallMeasure {
       high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y)};
     }
     constexpr double kMostBuckets = 4096;  // per axis
-    const double size = std::max({2 * std::sqrt(front_area_ / static_cast<double>(fronts_.size())),
-                                  (high.x - low.x) / kMostBuckets, (high.y - low.y) / kMostBuckets});
+    const double size =
+        std::max({2 * std::sqrt(front_area_ / static_cast<double>(fronts_.size())),
+                  (high.x - low.x) / kMostBuckets, (high.y - low.y) / kMostBuckets});
     std::vector<Entry> entries;
     std::vector<std::uint32_t> large;
     for (std::uint32_t t = 0; t < fronts_.size(); ++t) {

@@ -40,7 +40,7 @@ struct Soundness {
   std::uint64_t overlapping_pairs = 0;   ///< chunks whose front faces overlap, decided exactly
   std::uint64_t slivers = 0;             ///< chunks whose front is thinner than 1:50
   double min_chunk_volume = std::numeric_limits<double>::infinity();
-  std::uint64_t hash = 0;                ///< of all chunks' triangles, bit for bit
+  std::uint64_t hash = 0;  ///< of all chunks' triangles, bit for bit
 
   /// Relative; NaN when the expected volume is not known.
   double volume_error() const;

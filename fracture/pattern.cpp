@@ -28,11 +28,14 @@ double loop_area(const Pattern& pattern, LoopRange loop) {
 bool indices_are_valid(const Pattern& pattern) {
   const auto& begin = pattern.cell_begin;
   if (begin.empty() || begin.front() != 0 || begin.back() != pattern.corners.size() ||
-      pattern.across.size() != pattern.corners.size() || !std::is_sorted(begin.begin(), begin.end()))
+      pattern.across.size() != pattern.corners.size() ||
+      !std::is_sorted(begin.begin(), begin.end()))
     return false;
   if (!pattern.origin.empty() && pattern.origin.size() != pattern.cell_count()) return false;
   const auto vertex_exists = [&](std::uint32_t v) { return v < pattern.vertices.size(); };
-  const auto cell_exists = [&](Across a) { return a.is_border() || a.cell() < pattern.cell_count(); };
+  const auto cell_exists = [&](Across a) {
+    return a.is_border() || a.cell() < pattern.cell_count();
+  };
   return std::ranges::all_of(pattern.corners, vertex_exists) &&
          std::ranges::all_of(pattern.across, cell_exists) &&
          std::is_sorted(pattern.hole_begin.begin(), pattern.hole_begin.end());
@@ -116,8 +119,7 @@ PatternDefects check(const Pattern& pattern) {
     for (const LoopRange loop : loops_of(pattern, cell))
       for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
         const std::uint32_t from = pattern.corners[k], to = pattern.corners[loop.next(k)];
-        defects.repeated_vertices +=
-            from == to || pattern.vertices[from] == pattern.vertices[to];
+        defects.repeated_vertices += from == to || pattern.vertices[from] == pattern.vertices[to];
         const Across across = pattern.across[k];
         if (!across.is_border())
           defects.unpaired_edges += !has_reverse(pattern, across.cell(), cell, from, to);

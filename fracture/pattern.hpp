@@ -76,10 +76,10 @@ bool is_strictly_convex(const Pattern& pattern, std::uint32_t cell);
 
 /// What is wrong with a pattern; all zero for a valid one.
 struct PatternDefects {
-  std::uint64_t unpaired_edges = 0;    ///< interior edges without their exact reverse in `across`
-  std::uint64_t repeated_vertices = 0; ///< edges with equal ends (index or coordinates)
-  std::uint64_t inverted_cells = 0;    ///< area not above 0
-  std::uint64_t bad_indices = 0;       ///< a vertex, cell or loop that does not exist
+  std::uint64_t unpaired_edges = 0;     ///< interior edges without their exact reverse in `across`
+  std::uint64_t repeated_vertices = 0;  ///< edges with equal ends (index or coordinates)
+  std::uint64_t inverted_cells = 0;     ///< area not above 0
+  std::uint64_t bad_indices = 0;        ///< a vertex, cell or loop that does not exist
   friend bool operator==(const PatternDefects&, const PatternDefects&) = default;
 };
 /// Checks every invariant above except disjointness, which follows from them and the area.

@@ -19,12 +19,16 @@ double loop_area(const Pattern& pattern, const std::vector<std::uint32_t>& corne
 }
 
 // A cell without area is none, whatever the limit.
-bool is_small(double area, double limit) { return area < limit || !(area > 0); }
+bool is_small(double area, double limit) {
+  return area < limit || !(area > 0);
+}
 
 class SliverMerger {
  public:
   SliverMerger(const Pattern& pattern, std::vector<double> areas)
-      : pattern_(pattern), area_(std::move(areas)), group_(pattern.cell_count()),
+      : pattern_(pattern),
+        area_(std::move(areas)),
+        group_(pattern.cell_count()),
         members_(pattern.cell_count()) {
     for (std::uint32_t c = 0; c < pattern.cell_count(); ++c) group_[c] = c;
   }
@@ -175,8 +179,8 @@ class SliverMerger {
 
   const Pattern& pattern_;
   std::vector<double> area_;
-  std::vector<std::uint32_t> group_;                  // cell that stands for the cell's group
-  std::vector<std::vector<std::uint32_t>> members_;   // other cells of a group
+  std::vector<std::uint32_t> group_;                 // cell that stands for the cell's group
+  std::vector<std::vector<std::uint32_t>> members_;  // other cells of a group
   std::vector<std::uint32_t> number_, vertex_id_;
   std::vector<bool> visited_;
 };

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <map>
 
+#include "meshing/region.hpp"
 #include "meshing/triangulate.hpp"
 
 namespace sunder {
@@ -75,10 +76,13 @@ class VertexGroups {
   std::vector<Borders> borders_;
 };
 
-// Rebuilds a pattern after vertices were joined.
+// Rebuilds a pattern after vertices were joined. Where an edge of a cell has become the next one's
+// reverse, both go, and what lay across the one then lies across the other; a cell may go
+// altogether.
 class Collapse {
  public:
-  Collapse(const Pattern& pattern, const VertexGroups& groups) : pattern_(pattern), groups_(groups) {}
+  Collapse(const Pattern& pattern, const VertexGroups& groups)
+      : pattern_(pattern), groups_(groups) {}
 
   Pattern run() {
     number_cells();
@@ -86,12 +90,14 @@ class Collapse {
     vertex_id_.assign(pattern_.vertices.size(), kNone);
     for (std::uint32_t cell = 0; cell < pattern_.cell_count(); ++cell) {
       if (number_[cell] == kNone) continue;
-      const auto loops = loops_of(pattern_, cell);
-      for (std::size_t l = 0; l < loops.size(); ++l) {
-        if (left(loops[l]) < 3) continue;
-        if (l > 0) result.hole_begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
-        for (std::uint32_t k = loops[l].begin; k < loops[l].end; ++k)
-          append(result, k, loops[l].next(k));
+      bool first = true;
+      for (const LoopRange range : loops_of(pattern_, cell)) {
+        const std::vector<Side> loop = reduced(cell, range, nullptr);
+        if (loop.empty()) continue;
+        if (!first) result.hole_begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
+        first = false;
+        for (std::size_t i = 0; i < loop.size(); ++i)
+          append(result, loop[i], loop[i + 1 == loop.size() ? 0 : i + 1].from);
       }
       result.cell_begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
       result.origin.push_back(pattern_.origin_of(cell));
@@ -100,47 +106,64 @@ class Collapse {
   }
 
  private:
-  std::uint32_t vertex(std::uint32_t corner) const { return groups_.first(pattern_.corners[corner]); }
+  struct Side {
+    std::uint32_t from;
+    Across across;
+  };
+  // {cell, from, to}: the neighbour's edge from → to no longer has the cell across it but this.
+  using Bridges = std::map<std::array<std::uint32_t, 3>, Across>;
 
-  std::uint32_t left(LoopRange loop) const {  // edges that stay
-    std::uint32_t count = 0;
-    for (std::uint32_t k = loop.begin; k < loop.end; ++k) count += vertex(k) != vertex(loop.next(k));
-    return count;
+  std::vector<Side> reduced(std::uint32_t cell, LoopRange range, Bridges* bridges) const {
+    std::vector<Side> sides;
+    for (std::uint32_t k = range.begin; k < range.end; ++k) {
+      const std::uint32_t from = groups_.first(pattern_.corners[k]);
+      if (from != groups_.first(pattern_.corners[range.next(k)]))
+        sides.push_back({from, pattern_.across[k]});
+    }
+    for (std::size_t i = 0; i < sides.size();) {
+      const std::size_t j = (i + 1) % sides.size(), k = (i + 2) % sides.size();
+      if (sides[i].from != sides[k].from) {
+        ++i;
+        continue;
+      }
+      if (bridges) {
+        (*bridges)[{cell, sides[i].from, sides[j].from}] = sides[i].across;
+        (*bridges)[{cell, sides[j].from, sides[i].from}] = sides[j].across;
+      }
+      sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(std::max(i, j)));
+      sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(std::min(i, j)));
+      i = i > 1 ? i - 2 : 0;
+    }
+    return sides;
   }
 
   void number_cells() {
     std::uint32_t count = 0;
-    for (std::uint32_t cell = 0; cell < pattern_.cell_count(); ++cell)
-      number_.push_back(left(loops_of(pattern_, cell).front()) < 3 ? kNone : count++);
+    for (std::uint32_t cell = 0; cell < pattern_.cell_count(); ++cell) {
+      const auto loops = loops_of(pattern_, cell);
+      const bool stays = !reduced(cell, loops.front(), &bridges_).empty();
+      for (std::size_t l = 1; l < loops.size(); ++l) reduced(cell, loops[l], &bridges_);
+      number_.push_back(stays ? count++ : kNone);
+    }
   }
 
-  void append(Pattern& result, std::uint32_t k, std::uint32_t next) {
-    const std::uint32_t from = vertex(k), to = vertex(next);
-    if (from == to) return;
-    if (vertex_id_[from] == kNone) {
-      vertex_id_[from] = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.push_back(pattern_.vertices[from]);
+  void append(Pattern& result, Side side, std::uint32_t to) {
+    if (vertex_id_[side.from] == kNone) {
+      vertex_id_[side.from] = static_cast<std::uint32_t>(result.vertices.size());
+      result.vertices.push_back(pattern_.vertices[side.from]);
     }
-    result.corners.push_back(vertex_id_[from]);
-    const Across across = beyond(pattern_.across[k], from, to);
+    result.corners.push_back(vertex_id_[side.from]);
+    for (auto it = bridges_.end(); !side.across.is_border(); side.across = it->second) {
+      it = bridges_.find({side.across.cell(), side.from, to});
+      if (it == bridges_.end()) break;
+    }
+    const Across across = side.across;
     result.across.push_back(across.is_border() ? across : Across::cell(number_[across.cell()]));
-  }
-
-  // What lies across once vanished cells, which have become the edge itself, are looked through.
-  Across beyond(Across across, std::uint32_t from, std::uint32_t to) const {
-    while (!across.is_border() && number_[across.cell()] == kNone) {
-      const Across before = across;
-      for (const LoopRange loop : loops_of(pattern_, before.cell()))
-        for (std::uint32_t k = loop.begin; k < loop.end; ++k)
-          if (vertex(k) == from && vertex(loop.next(k)) == to) across = pattern_.across[k];
-      assert(!(across == before) && "a vanished cell has two sides");
-      if (across == before) break;
-    }
-    return across;
   }
 
   const Pattern& pattern_;
   const VertexGroups& groups_;
+  Bridges bridges_;
   std::vector<std::uint32_t> number_, vertex_id_;
 };
 
@@ -178,7 +201,8 @@ bool are_linked(const Pattern& pattern, std::uint32_t cell, std::uint32_t v, std
   return false;
 }
 
-void find_near_edges(const Pattern& pattern, std::uint32_t cell, double length, EdgeVertices& found) {
+void find_near_edges(const Pattern& pattern, std::uint32_t cell, double length,
+                     EdgeVertices& found) {
   std::vector<std::uint32_t> vertices(pattern.corners.begin() + pattern.cell_begin[cell],
                                       pattern.corners.begin() + pattern.cell_begin[cell + 1]);
   const auto x_of = [&](std::uint32_t v) { return pattern.vertices[v].x; };
@@ -206,10 +230,29 @@ void find_near_edges(const Pattern& pattern, std::uint32_t cell, double length, 
     }
 }
 
+// Two vertices in a row on an edge that an edge of the same cell joins already would leave nothing
+// between the two edges; such a neck stays as thin as it is.
+bool leaves_a_lens(const Pattern& pattern, std::uint32_t cell,
+                   const std::vector<std::pair<double, std::uint32_t>>& list) {
+  for (std::size_t i = 1; i < list.size(); ++i)
+    if (are_linked(pattern, cell, list[i - 1].second, list[i].second)) return true;
+  return false;
+}
+
 EdgeVertices vertices_near_edges(const Pattern& pattern, double length) {
   EdgeVertices found;
-  for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell)
-    if (!is_strictly_convex(pattern, cell)) find_near_edges(pattern, cell, length, found);
+  for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell) {
+    if (is_strictly_convex(pattern, cell)) continue;
+    EdgeVertices own;
+    find_near_edges(pattern, cell, length, own);
+    for (auto& [edge, list] : own) {
+      std::ranges::sort(list);
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+      if (leaves_a_lens(pattern, cell, list)) continue;
+      auto& all = found[edge];
+      all.insert(all.end(), list.begin(), list.end());
+    }
+  }
   for (auto& [edge, list] : found) {
     std::ranges::sort(list);
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -302,13 +345,17 @@ class PinchSplitter {
     return parts;
   }
 
-  // Whether every edge of the cell is an edge of one part: a cell so flat that rounding has turned
-  // it over has no such parts and stays as it is.
+  // Whether the parts have area and every edge of the cell is an edge of one of them: a cell so
+  // flat that rounding has turned it over has no such parts and stays as it is.
   bool tile(std::uint32_t cell, const Parts& parts) const {
     std::map<std::array<std::uint32_t, 2>, int> edges;
-    for (const auto& part : parts)
+    for (const auto& part : parts) {
+      Loop places;
+      for (const std::uint32_t v : part) places.push_back(pattern_.vertices[v]);
+      if (!(area(places) > 0)) return false;
       for (std::size_t i = 0; i < part.size(); ++i)
         ++edges[{part[i], part[i + 1 == part.size() ? 0 : i + 1]}];
+    }
     for (const auto& [edge, count] : edges)
       if (count > 1) return false;
     for (const LoopRange loop : loops_of(pattern_, cell))
@@ -335,7 +382,8 @@ class PinchSplitter {
       }
       for (const LoopRange loop : loops_of(pattern_, cell))
         for (std::uint32_t k = loop.begin; k < loop.end; ++k)
-          across_at_[{cell, pattern_.corners[k], pattern_.corners[loop.next(k)]}] = pattern_.across[k];
+          across_at_[{cell, pattern_.corners[k], pattern_.corners[loop.next(k)]}] =
+              pattern_.across[k];
     }
   }
 
@@ -352,8 +400,8 @@ class PinchSplitter {
       if (l > 0) result.hole_begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
       for (std::uint32_t k = loops[l].begin; k < loops[l].end; ++k) {
         result.corners.push_back(pattern_.corners[k]);
-        result.across.push_back(translate(pattern_.across[k], pattern_.corners[k],
-                                          pattern_.corners[loops[l].next(k)]));
+        result.across.push_back(
+            translate(pattern_.across[k], pattern_.corners[k], pattern_.corners[loops[l].next(k)]));
       }
     }
     finish(result, cell);
@@ -391,7 +439,8 @@ Pattern join_near_vertices(Pattern pattern, double length) {
   VertexGroups groups(pattern);
   bool joined = false;
   for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell)
-    for (const auto& [v, w] : near_pairs(pattern, cell, length)) joined |= groups.join(v, w, length);
+    for (const auto& [v, w] : near_pairs(pattern, cell, length))
+      joined |= groups.join(v, w, length);
   if (joined) pattern = Collapse(pattern, groups).run();
   const EdgeVertices inserted = vertices_near_edges(pattern, length);
   return inserted.empty() ? pattern : insert_vertices(pattern, inserted);

@@ -16,9 +16,9 @@ namespace sunder {
 /// that shrink to nothing disappear, their neighbours then share the edge. O(corners log corners).
 Pattern join_near_vertices(Pattern pattern, double length);
 
-/// Cuts every cell that visits a vertex twice – its loop touches itself, or a hole touches it – into
-/// convex cells of one origin, along diagonals between its own vertices. A solid whose faces meet in
-/// one line from four sides is no manifold; its parts are. O(corners) when there is none.
+/// Cuts every cell that visits a vertex twice – its loop touches itself, or a hole touches it –
+/// into convex cells of one origin, along diagonals between its own vertices. A solid whose faces
+/// meet in one line from four sides is no manifold; its parts are. O(corners) when there is none.
 Pattern split_pinches(Pattern pattern);
 
 }  // namespace sunder

@@ -47,9 +47,8 @@ using PatternParams = std::variant<VoronoiGridParams, VoronoiSitesParams, Vorono
 
 /// Scene name of a generator: "voronoi-grid", "voronoi-sites", "voronoi-random", "voronoi-focus",
 /// "quad-grid", "spiderweb"; in the order of PatternParams.
-inline constexpr std::string_view kPatternTypes[] = {"voronoi-grid",  "voronoi-sites",
-                                                     "voronoi-random", "voronoi-focus",
-                                                     "quad-grid",     "spiderweb"};
+inline constexpr std::string_view kPatternTypes[] = {
+    "voronoi-grid", "voronoi-sites", "voronoi-random", "voronoi-focus", "quad-grid", "spiderweb"};
 
 /// Unit quaternion.
 struct Quaternion {
@@ -63,8 +62,8 @@ Quaternion rotation_from_degrees(Vec3 degrees);
 /// The vector turned by a unit quaternion.
 Vec3 rotate(const Quaternion& rotation, Vec3 vector);
 
-/// A wall as a scene describes it. It lies in its local XY plane, thickness along z centred on z = 0.
-/// SI units.
+/// A wall as a scene describes it. It lies in its local XY plane, thickness along z centred on z =
+/// 0. SI units.
 struct Wall {
   std::string name = "wall";
   Region region{rectangle({6, 3}), {}};
@@ -81,17 +80,24 @@ struct Wall {
   std::string asset;
 };
 
-/// The same wall in the same place with its local origin at the lower left of its outline's bounding
-/// box: what is far from a polygon's origin keeps its digits in float32 files.
+/// The same wall in the same place with its local origin at the lower left of its outline's
+/// bounding box: what is far from a polygon's origin keeps its digits in float32 files.
 Wall with_local_origin(Wall wall);
 
-template <> std::span<const Field<VoronoiGridParams>> fields();
-template <> std::span<const Field<VoronoiSitesParams>> fields();
-template <> std::span<const Field<VoronoiRandomParams>> fields();
-template <> std::span<const Field<VoronoiFocusParams>> fields();
-template <> std::span<const Field<QuadGridParams>> fields();
-template <> std::span<const Field<SpiderwebParams>> fields();
+template <>
+std::span<const Field<VoronoiGridParams>> fields();
+template <>
+std::span<const Field<VoronoiSitesParams>> fields();
+template <>
+std::span<const Field<VoronoiRandomParams>> fields();
+template <>
+std::span<const Field<VoronoiFocusParams>> fields();
+template <>
+std::span<const Field<QuadGridParams>> fields();
+template <>
+std::span<const Field<SpiderwebParams>> fields();
 /// The plain keys of a wall (name, thickness, material, min_cell, anchors, asset).
-template <> std::span<const Field<Wall>> fields();
+template <>
+std::span<const Field<Wall>> fields();
 
 }  // namespace sunder

@@ -5,7 +5,9 @@
 
 namespace sunder {
 
-BackgroundSink::~BackgroundSink() { stop(); }
+BackgroundSink::~BackgroundSink() {
+  stop();
+}
 
 void BackgroundSink::write(std::span<const std::byte> bytes) {
   if (!thread_.joinable() && file_.size() < kAtOnce) return file_.write(bytes);

@@ -17,8 +17,8 @@ namespace sunder {
 
 /// Writes to a file on a thread of its own, so that making the bytes and handing them to the kernel
 /// (half the time of a large export) overlap. Spans below kBlock are copied, larger ones must stay
-/// as they are until finish(). The first kAtOnce bytes are written at once: a small file is not worth
-/// a thread. At most kQueue blocks wait.
+/// as they are until finish(). The first kAtOnce bytes are written at once: a small file is not
+/// worth a thread. At most kQueue blocks wait.
 class BackgroundSink : public ByteSink {
  public:
   explicit BackgroundSink(OutputFile& file) : file_(file) {}

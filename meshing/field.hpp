@@ -18,9 +18,7 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool open = false;
-  bool contains(double value) const {
-    return (open ? value > low : value >= low) && value <= high;
-  }
+  bool contains(double value) const { return (open ? value > low : value >= low) && value <= high; }
 };
 
 /// One row of a parameter struct's table: name in files, member, unit, what it does, valid values.

@@ -19,8 +19,12 @@ struct LatticePoint {
   friend bool operator==(const LatticePoint&, const LatticePoint&) = default;
   friend auto operator<=>(const LatticePoint&, const LatticePoint&) = default;
 };
-constexpr LatticePoint operator+(LatticePoint a, LatticePoint b) { return {a.x + b.x, a.y + b.y}; }
-constexpr LatticePoint operator-(LatticePoint a, LatticePoint b) { return {a.x - b.x, a.y - b.y}; }
+constexpr LatticePoint operator+(LatticePoint a, LatticePoint b) {
+  return {a.x + b.x, a.y + b.y};
+}
+constexpr LatticePoint operator-(LatticePoint a, LatticePoint b) {
+  return {a.x - b.x, a.y - b.y};
+}
 
 /// The integer frame in which a wall's pattern is decided: lattice point X stands for
 /// `origin + X * step` metres. Decisions are made on integers, exactly; metres only place things.
@@ -45,15 +49,17 @@ struct Lattice {
 /// kMaxExtent allows. Throws Error{geometry} unless both sizes are finite and positive.
 Lattice make_lattice(Vec2 origin, Vec2 size);
 
-/// Line a·x' + b·y' = c in doubled coordinates x' = 2 (x - base), y' = 2 (y - base) relative to some
-/// base point; the inside is where a·x' + b·y' < c. |a|, |b| <= 2^30, |c| <= 2^62.
+/// Line a·x' + b·y' = c in doubled coordinates x' = 2 (x - base), y' = 2 (y - base) relative to
+/// some base point; the inside is where a·x' + b·y' < c. |a|, |b| <= 2^30, |c| <= 2^62.
 struct LatticeLine {
   std::int64_t a = 0, b = 0, c = 0;
   friend bool operator==(const LatticeLine&, const LatticeLine&) = default;
 };
 
 /// Points as near to `base` as to `base + d`: d·x' = |d|².
-constexpr LatticeLine bisector(LatticePoint d) { return {d.x, d.y, d.x * d.x + d.y * d.y}; }
+constexpr LatticeLine bisector(LatticePoint d) {
+  return {d.x, d.y, d.x * d.x + d.y * d.y};
+}
 
 /// Line through two points given relative to the base; what lies left of p → q is inside.
 constexpr LatticeLine line_through(LatticePoint p, LatticePoint q) {
@@ -62,7 +68,9 @@ constexpr LatticeLine line_through(LatticePoint p, LatticePoint q) {
 }
 
 /// Twice the signed area of triangle (0, p, q); exact.
-constexpr std::int64_t cross(LatticePoint p, LatticePoint q) { return p.x * q.y - p.y * q.x; }
+constexpr std::int64_t cross(LatticePoint p, LatticePoint q) {
+  return p.x * q.y - p.y * q.x;
+}
 
 /// > 0 when a → b → c turns left, 0 when straight; exact.
 constexpr std::int64_t orientation(LatticePoint a, LatticePoint b, LatticePoint c) {

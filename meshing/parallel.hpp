@@ -13,8 +13,7 @@ namespace sunder {
 /// number of threads. The first range's exception is rethrown after all have ended.
 template <class Work>
 void for_each_range(std::size_t count, int threads, Work work) {
-  const std::size_t parts =
-      threads <= 1 || count < 2048 ? 1 : static_cast<std::size_t>(threads);
+  const std::size_t parts = threads <= 1 || count < 2048 ? 1 : static_cast<std::size_t>(threads);
   if (parts == 1) return work(std::size_t{0}, count);
   std::vector<std::exception_ptr> errors(parts);
   const auto run = [&](std::size_t i) {

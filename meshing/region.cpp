@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "meshing/error.hpp"
 
@@ -16,7 +17,9 @@ std::string text(Vec2 p) {
   return buffer;
 }
 
-int sign(Int128 value) { return (value > 0) - (value < 0); }
+int sign(Int128 value) {
+  return (value > 0) - (value < 0);
+}
 
 // Twice the area of (a, b, c), also for doubled coordinates.
 int turn(LatticePoint a, LatticePoint b, LatticePoint c) {
@@ -24,7 +27,9 @@ int turn(LatticePoint a, LatticePoint b, LatticePoint c) {
               static_cast<Int128>(b.y - a.y) * (c.x - a.x));
 }
 
-Vec2 to_double(LatticePoint p) { return {static_cast<double>(p.x), static_cast<double>(p.y)}; }
+Vec2 to_double(LatticePoint p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y)};
+}
 
 bool between(std::int64_t a, std::int64_t value, std::int64_t b) {
   return std::min(a, b) <= value && value <= std::max(a, b);
@@ -114,7 +119,8 @@ class RegionCheck {
     if (loop.size() < 3)
       fail(name + " has " + std::to_string(loop.size()) + " corners, a polygon needs at least 3");
     for (const Vec2& p : loop) {
-      if (!std::isfinite(p.x) || !std::isfinite(p.y)) fail(name + " has a corner that is not finite");
+      if (!std::isfinite(p.x) || !std::isfinite(p.y))
+        fail(name + " has a corner that is not finite");
       result.points.push_back(lattice_.nearest(p));
     }
     check_simple(result);
@@ -127,6 +133,31 @@ class RegionCheck {
       std::reverse(result.places.begin() + 1, result.places.end());
     }
     return result;
+  }
+
+  void check_simple(const NamedLoop& loop) const {
+    const std::size_t size = loop.points.size();
+    for (std::size_t i = 0; i < size; ++i)
+      if (loop.points[i] == next(loop.points, i))
+        fail(loop.name + " corners " + std::to_string(i) + " and " +
+             std::to_string((i + 1) % size) + " are nearer than the wall can resolve, at " +
+             text(loop.places[i]));
+    for (std::size_t i = 0; i < size; ++i) {
+      const LatticePoint a = loop.points[i], b = next(loop.points, i);
+      for (std::size_t j = i + 1; j < size; ++j) {
+        const LatticePoint c = loop.points[j], d = next(loop.points, j);
+        const bool follows = j == i + 1, precedes = i == 0 && j + 1 == size;
+        const bool bad = follows && precedes ? false
+                         : follows           ? on_segment(d, a, b) || on_segment(a, c, d)
+                         : precedes          ? on_segment(c, a, b) || on_segment(b, c, d)
+                                             : touch(a, b, c, d);
+        if (bad)
+          fail(loop.name + " meets itself: edge " + std::to_string(i) + " from " +
+               text(loop.places[i]) + " and edge " + std::to_string(j) + " from " +
+               text(loop.places[j]) + "; a polygon must be simple");
+      }
+    }
+    if (twice_area(loop.points) == 0) fail(loop.name + " has no area");
   }
 
   void check_inside(const NamedLoop& opening, const NamedLoop& outline) const {
@@ -157,30 +188,6 @@ class RegionCheck {
  private:
   Vec2 metres(Vec2 doubled_point) const { return lattice_.to_metres(0.5 * doubled_point); }
 
-  void check_simple(const NamedLoop& loop) const {
-    const std::size_t size = loop.points.size();
-    for (std::size_t i = 0; i < size; ++i)
-      if (loop.points[i] == next(loop.points, i))
-        fail(loop.name + " corners " + std::to_string(i) + " and " + std::to_string((i + 1) % size) +
-             " are nearer than the wall can resolve, at " + text(loop.places[i]));
-    for (std::size_t i = 0; i < size; ++i) {
-      const LatticePoint a = loop.points[i], b = next(loop.points, i);
-      for (std::size_t j = i + 1; j < size; ++j) {
-        const LatticePoint c = loop.points[j], d = next(loop.points, j);
-        const bool follows = j == i + 1, precedes = i == 0 && j + 1 == size;
-        const bool bad = follows && precedes ? false
-                         : follows           ? on_segment(d, a, b) || on_segment(a, c, d)
-                         : precedes          ? on_segment(c, a, b) || on_segment(b, c, d)
-                                             : touch(a, b, c, d);
-        if (bad)
-          fail(loop.name + " meets itself: edge " + std::to_string(i) + " from " +
-               text(loop.places[i]) + " and edge " + std::to_string(j) + " from " +
-               text(loop.places[j]) + "; a polygon must be simple");
-      }
-    }
-    if (twice_area(loop.points) == 0) fail(loop.name + " has no area");
-  }
-
   void check_not_crossing(const NamedLoop& a, const NamedLoop& b) const {
     for (std::size_t i = 0; i < a.points.size(); ++i)
       for (std::size_t j = 0; j < b.points.size(); ++j)
@@ -191,6 +198,75 @@ class RegionCheck {
 
   const Lattice& lattice_;
   const std::string& what_;
+};
+
+// Below this part of the region's size what nearly touches is meant to touch: float32 files could
+// not tell the gap, and decimals that meet on paper meet this well.
+constexpr double kTouch = 0x1p-20;
+
+// Makes corners that nearly meet meet, and puts corners that nearly lie on an edge of another loop
+// on it, as a corner of that loop: from here on all contacts are exact.
+class Contacts {
+ public:
+  Contacts(std::vector<NamedLoop>& loops, const Lattice& lattice)
+      : loops_(loops),
+        reach_(
+            std::max(2.0, kTouch * static_cast<double>(std::max(lattice.width, lattice.height)))) {}
+
+  void settle() {
+    for (std::size_t later = 1; later < loops_.size(); ++later)
+      for (std::size_t earlier = 0; earlier < later; ++earlier)
+        move_corners(loops_[later], loops_[earlier]);
+    std::vector<NamedLoop> split;
+    for (const NamedLoop& loop : loops_) split.push_back(with_corners_of_others(loop));
+    loops_ = std::move(split);
+  }
+
+ private:
+  void move_corners(NamedLoop& loop, const NamedLoop& to) const {
+    for (std::size_t i = 0; i < loop.points.size(); ++i)
+      for (std::size_t j = 0; j < to.points.size(); ++j) {
+        const Vec2 d = to_double(loop.points[i] - to.points[j]);
+        if (dot(d, d) > reach_ * reach_) continue;
+        loop.points[i] = to.points[j];
+        loop.places[i] = to.places[j];
+      }
+  }
+
+  NamedLoop with_corners_of_others(const NamedLoop& loop) const {
+    struct Stop {
+      double along;
+      LatticePoint point;
+      Vec2 place;
+    };
+    NamedLoop result{loop.name, {}, {}};
+    for (std::size_t i = 0; i < loop.points.size(); ++i) {
+      const LatticePoint a = loop.points[i];
+      const Vec2 edge = to_double(next(loop.points, i) - a);
+      std::vector<Stop> stops;
+      for (const NamedLoop& other : loops_)
+        for (std::size_t j = 0; &other != &loop && j < other.points.size(); ++j) {
+          const Vec2 d = to_double(other.points[j] - a);
+          const double along = dot(d, edge), off = cross(edge, d), square = dot(edge, edge);
+          const bool near = off != 0 && off * off <= reach_ * reach_ * square;
+          if (near && along > 0 && along < square && other.points[j] != next(loop.points, i))
+            stops.push_back({along, other.points[j], other.places[j]});
+        }
+      std::ranges::sort(stops, {},
+                        [](const Stop& stop) { return std::tuple(stop.along, stop.point); });
+      result.points.push_back(a);
+      result.places.push_back(loop.places[i]);
+      for (const Stop& stop : stops) {
+        if (stop.point == result.points.back()) continue;
+        result.points.push_back(stop.point);
+        result.places.push_back(stop.place);
+      }
+    }
+    return result;
+  }
+
+  std::vector<NamedLoop>& loops_;
+  double reach_;  // lattice units
 };
 
 }  // namespace
@@ -235,8 +311,8 @@ std::uint32_t LatticeRegion::next(std::uint32_t corner) const {
 bool LatticeRegion::is_box() const {
   if (edge_count() != 4) return false;
   const LatticePoint far{lattice.width, lattice.height};
-  return corners[0] == LatticePoint{} && corners[1] == LatticePoint{far.x, 0} && corners[2] == far &&
-         corners[3] == LatticePoint{0, far.y};
+  return corners[0] == LatticePoint{} && corners[1] == LatticePoint{far.x, 0} &&
+         corners[2] == far && corners[3] == LatticePoint{0, far.y};
 }
 
 LatticeRegion make_lattice_region(const Region& region, const Lattice& lattice,
@@ -257,8 +333,12 @@ LatticeRegion make_lattice_region(const Region& region, const Lattice& lattice,
       if (p.x < box.low.x || p.y < box.low.y || p.x > box.high.x || p.y > box.high.y)
         check.fail("opening " + std::to_string(i) + " has a corner at " + text(p) +
                    " outside the outline; an opening may touch the outline but not cross it");
-    for (std::size_t j = 1; j <= i; ++j) check.check_apart(loops[j], loops[i + 1]);
-    check.check_inside(loops[i + 1], loops[0]);
+  }
+  if (loops.size() > 1) Contacts(loops, lattice).settle();
+  for (std::size_t i = 1; i < loops.size(); ++i) {
+    check.check_simple(loops[i]);
+    for (std::size_t j = 1; j < i; ++j) check.check_apart(loops[j], loops[i]);
+    check.check_inside(loops[i], loops[0]);
   }
   LatticeRegion result{lattice, {}, {}, {0}};
   Int128 left = 0;
@@ -272,6 +352,15 @@ LatticeRegion make_lattice_region(const Region& region, const Lattice& lattice,
   }
   if (left <= 0) check.fail("the openings leave nothing of the wall");
   return result;
+}
+
+double area(const LatticeRegion& region) {
+  double sum = 0;
+  for (std::uint32_t l = 0; l < region.loop_count(); ++l)
+    sum +=
+        area(std::span(region.places)
+                 .subspan(region.loop_begin[l], region.loop_begin[l + 1] - region.loop_begin[l]));
+  return sum;
 }
 
 int locate(const LatticeRegion& region, LatticePoint point) {

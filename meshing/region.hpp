@@ -55,12 +55,17 @@ struct LatticeRegion {
 /// Most corners of outline and openings together; checking them takes time with their square.
 constexpr std::size_t kMaxCorners = 20000;
 
-/// Puts a region on a lattice over its bounding box and checks it: exact, O(edges²).
-/// Throws Error{geometry} naming the loops, corners and coordinates at fault: fewer than 3 corners,
-/// a value that is not finite, corners nearer than a lattice step, a loop that meets itself, loops
+/// Puts a region on a lattice over its bounding box and checks it: exact, O(edges²). Loops that
+/// come nearer than 2^-20 of the region's size touch: a corner that near to another loop's corner
+/// takes its place, one that near to another loop's edge becomes a corner of that loop too. Throws
+/// Error{geometry} naming the loops, corners and coordinates at fault: fewer than 3 corners, a
+/// value that is not finite, corners nearer than a lattice step, a loop that meets itself, loops
 /// that cross or overlap, an opening outside the outline. `what` names the wall in the message.
 LatticeRegion make_lattice_region(const Region& region, const Lattice& lattice,
                                   const std::string& what);
+
+/// Area of the region with its corners in their places, m².
+double area(const LatticeRegion& region);
 
 /// +1 inside, 0 on the boundary, -1 outside the region; exact. O(edges).
 int locate(const LatticeRegion& region, LatticePoint point);

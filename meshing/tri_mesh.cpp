@@ -9,8 +9,8 @@ namespace sunder {
 namespace {
 
 struct Integrals {
-  double one = 0;             // ∫ 1
-  Vec3 first;                 // ∫ x
+  double one = 0;                                         // ∫ 1
+  Vec3 first;                                             // ∫ x
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  // ∫ x x …
 };
 
@@ -41,8 +41,10 @@ MassProperties mass_properties(const TriMesh& mesh) {
   if (sum.one == 0) return {0, base, {}};
   const Vec3 c = (1 / sum.one) * sum.first;
   const double v = sum.one;
-  const double xx = sum.xx - v * c.x * c.x, yy = sum.yy - v * c.y * c.y, zz = sum.zz - v * c.z * c.z;
-  return {v, base + c,
+  const double xx = sum.xx - v * c.x * c.x, yy = sum.yy - v * c.y * c.y,
+               zz = sum.zz - v * c.z * c.z;
+  return {v,
+          base + c,
           {yy + zz, xx + zz, xx + yy, -(sum.xy - v * c.x * c.y), -(sum.xz - v * c.x * c.z),
            -(sum.yz - v * c.y * c.z)}};
 }
@@ -66,8 +68,7 @@ MeshDefects check(const TriMesh& mesh) {
   std::ranges::sort(edges);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     defects.nonmanifold_edges += i > 0 && edges[i] == edges[i - 1];
-    defects.open_edges +=
-        !std::ranges::binary_search(edges, Edge{edges[i][1], edges[i][0]});
+    defects.open_edges += !std::ranges::binary_search(edges, Edge{edges[i][1], edges[i][0]});
   }
   defects.inside_out = defects.open_edges == 0 && !(mass_properties(mesh).volume > 0);
   return defects;

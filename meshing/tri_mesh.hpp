@@ -28,8 +28,8 @@ MassProperties mass_properties(const TriMesh& mesh);
 /// What is wrong with a mesh as a solid; all zero for a sound one. Edges are matched by vertex
 /// index: a directed edge must occur once, and its reverse once.
 struct MeshDefects {
-  std::uint64_t open_edges = 0;         ///< directed edges without their reverse
-  std::uint64_t nonmanifold_edges = 0;  ///< directed edges that occur more than once
+  std::uint64_t open_edges = 0;            ///< directed edges without their reverse
+  std::uint64_t nonmanifold_edges = 0;     ///< directed edges that occur more than once
   std::uint64_t degenerate_triangles = 0;  ///< two equal corners, or no area at all
   std::uint64_t bad_indices = 0;
   bool inside_out = false;  ///< closed, but the volume is not above 0

@@ -6,7 +6,8 @@
 namespace sunder {
 namespace {
 
-// Taylor polynomials on |x| <= pi/4: the first dropped terms are x^19/19! and x^20/20!, below 1e-19.
+// Taylor polynomials on |x| <= pi/4: the first dropped terms are x^19/19! and x^20/20!, below
+// 1e-19.
 double sin_small(double x) {
   const double t = x * x;
   double sum = 0;

@@ -70,8 +70,8 @@ TEST_P(AssetOverSeeds, EveryWallIsSound) {
     else
       wall.pattern = VoronoiGridParams{cell, GetParam()};
     if (seed % 2 == 0)
-      wall.region.openings = {rectangle({0.31 * size, 0.2 * size},
-                                        wall.region.outline[0] + Vec2{0.25 * size, 0})};
+      wall.region.openings = {
+          rectangle({0.31 * size, 0.2 * size}, wall.region.outline[0] + Vec2{0.25 * size, 0})};
     expect_sound(wall, seed, "seed " + std::to_string(seed));
   }
 }
@@ -83,7 +83,8 @@ TEST(Asset, OtherGeneratorsAreSoundOverSeeds) {
     wall.region.openings = {rectangle({0.9, 2.1}, {1, 0})};
     const Vec2 hit{2.2 + 3.5 * random_unit(seed, 1), 0.1 + 2.8 * random_unit(seed, 2)};
     for (const PatternParams& params :
-         {PatternParams(VoronoiRandomParams{60}), PatternParams(VoronoiFocusParams{{hit}, 80, 1, 0.8}),
+         {PatternParams(VoronoiRandomParams{60}),
+          PatternParams(VoronoiFocusParams{{hit}, 80, 1, 0.8}),
           PatternParams(SpiderwebParams{.impacts = {hit}}),
           PatternParams(SpiderwebParams{.impacts = {hit, {4, 1.5}}, .radial = 9})}) {
       wall.pattern = params;
@@ -110,8 +111,18 @@ TEST(Asset, ThePapersAdversarialBlockIsSound) {
 TEST(Asset, RepeatedAndCocircularSitesAreSound) {
   VoronoiSitesParams sites;
   for (int i = 0; i < 8; ++i)  // a circle of lattice directions, exactly cocircular
-    for (const Vec2 d : {Vec2{3, 4}, {4, 3}, {5, 0}, {0, 5}, {-3, 4}, {-4, 3}, {-5, 0}, {0, -5},
-                         {3, -4}, {4, -3}, {-3, -4}, {-4, -3}})
+    for (const Vec2 d : {Vec2{3, 4},
+                         {4, 3},
+                         {5, 0},
+                         {0, 5},
+                         {-3, 4},
+                         {-4, 3},
+                         {-5, 0},
+                         {0, -5},
+                         {3, -4},
+                         {4, -3},
+                         {-3, -4},
+                         {-4, -3}})
       sites.sites.push_back(Vec2{3, 1.5} + 0.125 * (1 + i) * d);
   std::erase_if(sites.sites, [](Vec2 p) { return p.x < 0 || p.x > 6 || p.y < 0 || p.y > 3; });
   const std::size_t distinct = sites.sites.size();

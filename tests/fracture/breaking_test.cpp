@@ -32,8 +32,8 @@ TEST(Breaking, HitAfterHitEqualsAFullRebuild) {
         std::vector<std::uint8_t> before(wall.shown().begin(), wall.shown().end());
         std::vector<std::uint32_t> cells;
         for (std::uint64_t i = 0; i < 1 + hit % 7; ++i)
-          cells.push_back(static_cast<std::uint32_t>(random_bits(seed, hit, i) %
-                                                     pattern.cell_count()));
+          cells.push_back(
+              static_cast<std::uint32_t>(random_bits(seed, hit, i) % pattern.cell_count()));
         const BreakableWall::Change change = wall.break_cells(cells);
         const auto full = shown_faces(pattern, wall.intact());
         ASSERT_TRUE(std::ranges::equal(full, wall.shown())) << "seed " << seed << " hit " << hit;
@@ -50,8 +50,7 @@ TEST(Breaking, AHitTouchesOnlyTheCellAndItsNeighbours) {
   BreakableWall wall(pattern);
   const std::uint32_t cell = cell_at(pattern, {4, 1.5});
   const BreakableWall::Change change = wall.break_cells(std::vector{cell});
-  EXPECT_EQ(change.cells_touched,
-            1u + pattern.cell_begin[cell + 1] - pattern.cell_begin[cell]);
+  EXPECT_EQ(change.cells_touched, 1u + pattern.cell_begin[cell + 1] - pattern.cell_begin[cell]);
   EXPECT_EQ(change.shown.size(), change.cells_touched - 1);
   EXPECT_TRUE(wall.break_cells(std::vector{cell}).broken.empty());
 }

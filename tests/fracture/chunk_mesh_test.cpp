@@ -11,12 +11,9 @@ namespace sunder {
 namespace {
 
 std::vector<PatternParams> generators() {
-  return {VoronoiGridParams{0.3, 1},
-          VoronoiGridParams{0.3, 0},
-          VoronoiRandomParams{150},
-          VoronoiFocusParams{{{3, 1.5}}, 150, 1, 0.7},
-          QuadGridParams{0.3, 1, "quads"},
-          SpiderwebParams{.impacts = {{3, 1.5}}}};
+  return {VoronoiGridParams{0.3, 1},       VoronoiGridParams{0.3, 0},
+          VoronoiRandomParams{150},        VoronoiFocusParams{{{3, 1.5}}, 150, 1, 0.7},
+          QuadGridParams{0.3, 1, "quads"}, SpiderwebParams{.impacts = {{3, 1.5}}}};
 }
 
 WallAsset asset_of(const PatternParams& params, std::uint64_t seed, bool openings,
@@ -104,8 +101,8 @@ TEST(RenderMeshes, NormalsAreUnitAndPerpendicularToTheirTriangles) {
         const std::uint32_t* t = meshes.indices.data() + meshes.lists[list].begin + i;
         const std::size_t base = meshes.vertex_begin[c];
         const Vec3 a = vec(meshes.positions, base + t[0]);
-        const Vec3 n = cross(vec(meshes.positions, base + t[1]) - a,
-                             vec(meshes.positions, base + t[2]) - a);
+        const Vec3 n =
+            cross(vec(meshes.positions, base + t[1]) - a, vec(meshes.positions, base + t[2]) - a);
         for (int corner = 0; corner < 3; ++corner) {
           const Vec3 given = vec(meshes.normals, base + t[corner]);
           EXPECT_NEAR(length(given), 1, 1e-6);
@@ -171,7 +168,8 @@ TEST(Measure, FindsPlantedFaults) {
   });
   EXPECT_GT(shifted.overlapping_pairs, 0u);
   const Soundness inverted = with([](SoupChunk& c) {
-    for (std::size_t i = 0; i < c.triangles.size(); i += 3) std::swap(c.triangles[i], c.triangles[i + 1]);
+    for (std::size_t i = 0; i < c.triangles.size(); i += 3)
+      std::swap(c.triangles[i], c.triangles[i + 1]);
   });
   EXPECT_EQ(inverted.inverted_chunks, 1u);
   SoupWall fewer = good;

@@ -18,15 +18,19 @@ namespace {
 
 Wall door_and_windows() {
   Wall wall;
-  wall.region.openings = {rectangle({0.9, 2.1}, {1, 0}), rectangle({1.2, 1.0}, {3.0, 1.1}),
+  wall.region.openings = {rectangle({0.9, 2.1}, {1, 0}),
+                          rectangle({1.2, 1.0}, {3.0, 1.1}),
                           {{4.6, 1.2}, {5.5, 1.0}, {5.3, 2.4}, {4.9, 1.8}, {4.5, 2.3}}};
   return wall;
 }
 
 // Every generator of convex cells that openings can cut.
 std::vector<PatternParams> grids(double cell) {
-  return {VoronoiGridParams{cell, 1.0}, VoronoiGridParams{cell, 0.5}, VoronoiGridParams{cell, 0.0},
-          QuadGridParams{cell, 0.9, "quads"}, QuadGridParams{cell, 0.0, "quads"},
+  return {VoronoiGridParams{cell, 1.0},
+          VoronoiGridParams{cell, 0.5},
+          VoronoiGridParams{cell, 0.0},
+          QuadGridParams{cell, 0.9, "quads"},
+          QuadGridParams{cell, 0.0, "quads"},
           VoronoiRandomParams{1 + static_cast<std::int64_t>(18 / (cell * cell))}};
 }
 
@@ -55,8 +59,8 @@ TEST(Cut, CellsTileAWallWithDoorAndWindows) {
 
 // A quarter of a metre divides everything: corners on cell corners, edges on cell edges.
 TEST(Cut, OpeningsThatFollowTheGridLeaveWholeSquares) {
-  for (const PatternParams& params :
-       {PatternParams(VoronoiGridParams{0.25, 0}), PatternParams(QuadGridParams{0.25, 0, "quads"})}) {
+  for (const PatternParams& params : {PatternParams(VoronoiGridParams{0.25, 0}),
+                                      PatternParams(QuadGridParams{0.25, 0, "quads"})}) {
     Wall wall;
     wall.pattern = params;
     wall.region.openings = {rectangle({1.0, 2.0}, {1, 0}), rectangle({0.5, 0.75}, {3, 1}),
@@ -94,8 +98,10 @@ TEST(Cut, OpeningsThatTouchEachOtherAtACornerKeepThePartition) {
   for (const PatternParams& params : grids(0.4)) {
     Wall wall;
     wall.pattern = params;
-    wall.region.openings = {rectangle({1, 1}, {1, 1}), rectangle({1, 0.5}, {2, 2}),
-                            {{4, 0}, {4.5, 1}, {5, 0}}, {{4, 3}, {4.25, 2.5}, {4.5, 3}}};
+    wall.region.openings = {rectangle({1, 1}, {1, 1}),
+                            rectangle({1, 0.5}, {2, 2}),
+                            {{4, 0}, {4.5, 1}, {5, 0}},
+                            {{4, 3}, {4.25, 2.5}, {4.5, 3}}};
     expect_partition(pattern_of(wall, 3), wall.region, std::to_string(params.index()));
   }
 }
@@ -182,15 +188,16 @@ TEST(Cut, WallsThatAreNoPolygonAreRefused) {
     return "";
   };
   const Loop rect = rectangle({6, 3});
-  EXPECT_NE(message({{{0, 0}, {6, 3}, {6, 0}, {0, 3}}, {}}).find("meets itself"), std::string::npos);
+  EXPECT_NE(message({{{0, 0}, {6, 3}, {6, 0}, {0, 3}}, {}}).find("meets itself"),
+            std::string::npos);
   EXPECT_NE(message({rect, {rectangle({1, 1}, {5.5, 1})}}).find("outside the outline"),
             std::string::npos);
   EXPECT_NE(message({rect, {rectangle({1, 1}, {1, 1}), rectangle({1, 1}, {1.5, 1.5})}})
                 .find("crosses opening"),
             std::string::npos);
-  EXPECT_NE(message({rect, {rectangle({2, 2}, {0.5, 0.5}), rectangle({1, 1}, {1, 1})}})
-                .find("overlap"),
-            std::string::npos);
+  EXPECT_NE(
+      message({rect, {rectangle({2, 2}, {0.5, 0.5}), rectangle({1, 1}, {1, 1})}}).find("overlap"),
+      std::string::npos);
   EXPECT_NE(message({rect, {rect}}).find("leaves nothing"), std::string::npos);
   EXPECT_NE(message({rect, {rectangle({1, 1}, {1, 1}), rectangle({1, 1}, {1, 1})}}).find("overlap"),
             std::string::npos);

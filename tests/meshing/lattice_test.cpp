@@ -39,8 +39,8 @@ TEST(Lattice, ALineHasItsLeftSideInside) {
 TEST(Lattice, CrossingsLieOnBothLinesAtTheLargestExtent) {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     const LatticeLine p = bisector(random_point(seed, 0, kMaxExtent));
-    const LatticeLine q = line_through(random_point(seed, 1, kMaxExtent / 2),
-                                       random_point(seed, 2, kMaxExtent / 2));
+    const LatticeLine q =
+        line_through(random_point(seed, 1, kMaxExtent / 2), random_point(seed, 2, kMaxExtent / 2));
     if (static_cast<Int128>(p.a) * q.b == static_cast<Int128>(q.a) * p.b) continue;
     const LatticeCrossing crossing = intersection(p, q);
     EXPECT_GT(crossing.w, 0);

@@ -9,8 +9,8 @@ namespace {
 TriMesh box(Vec3 size, Vec3 at) {
   TriMesh mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.vertices.push_back({at.x + (i & 1 ? size.x : 0), at.y + (i & 2 ? size.y : 0),
-                             at.z + (i & 4 ? size.z : 0)});
+    mesh.vertices.push_back(
+        {at.x + (i & 1 ? size.x : 0), at.y + (i & 2 ? size.y : 0), at.z + (i & 4 ? size.z : 0)});
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
