@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fracture/pattern.hpp"
-#include "meshing/tri_mesh.hpp"
+#include "meshing/raw_vector.hpp"
 
 namespace sunder {
 
@@ -38,7 +38,7 @@ class BreakableWall {
 
  private:
   const Pattern& pattern_;
-  std::vector<std::uint8_t> intact_, shown_;
+  RawVector<std::uint8_t> intact_, shown_;
 };
 
 /// The flags of all faces from the cells' flags, the whole wall anew: the definition that

@@ -24,9 +24,8 @@ class RawAllocator {
   RawAllocator(const RawAllocator<U>&) {}
 
   T* allocate(std::size_t count) {
-    constexpr std::size_t kHugePage = std::size_t{1} << 21;
     const std::size_t bytes = count * sizeof(T);
-    if (bytes < 2 * kHugePage) return std::allocator<T>().allocate(count);
+    if (bytes < kHugePage) return std::allocator<T>().allocate(count);
     const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     void* block = std::aligned_alloc(kHugePage, rounded);
     if (!block) throw std::bad_alloc();
@@ -34,7 +33,7 @@ class RawAllocator {
     return static_cast<T*>(block);
   }
   void deallocate(T* block, std::size_t count) {
-    if (count * sizeof(T) < (std::size_t{1} << 22))
+    if (count * sizeof(T) < kHugePage)
       std::allocator<T>().deallocate(block, count);
     else
       std::free(block);
@@ -48,6 +47,9 @@ class RawAllocator {
     ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
   }
   friend bool operator==(const RawAllocator&, const RawAllocator&) { return true; }
+
+ private:
+  static constexpr std::size_t kHugePage = std::size_t{1} << 21;
 };
 
 /// A vector whose resize() leaves new numbers as they are.
