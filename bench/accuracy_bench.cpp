@@ -33,7 +33,7 @@ Wall varied_wall(std::uint64_t seed, double jitter) {
       rectangle({size, size * (0.3 + random_unit(seed, 3))}, {offset, -0.7 * offset});
   wall.thickness = size * pick(kThickness, seed, 4);
   const double cell = size / (3 + 5 * random_unit(seed, 5));
-  wall.pattern = seed % 3 == 0 ? PatternParams(QuadGridParams{cell, jitter, "quads"})
+  wall.pattern = seed % 3 == 0 ? PatternParams(QuadGridParams{cell, jitter})
                                : PatternParams(VoronoiGridParams{cell, jitter});
   if (seed % 2 == 0)
     wall.region.openings = {
@@ -101,7 +101,7 @@ Wall touching_wall(std::uint64_t seed) {
   }
   const double cell = unit * (0.5 + 0.5 * below(6)), jitter = 0.5 * below(3);
   wall.pattern = below(2) > 0 ? PatternParams(VoronoiGridParams{cell, jitter})
-                              : PatternParams(QuadGridParams{cell, 0.9 * jitter, "quads"});
+                              : PatternParams(QuadGridParams{cell, 0.9 * jitter});
   return wall;
 }
 

@@ -81,24 +81,28 @@ PaddedSites pad(const Sites& sites) {
   return padded;
 }
 
-// Turns mirrored neighbours into the box's sides: once a side, and none across a box corner.
-void unfold(Stars& stars, const Sites& sites, std::int32_t i, std::int32_t j) {
-  const std::int64_t cell = j * std::int64_t{sites.columns} + i;
-  const StarWord word = stars.words[static_cast<std::size_t>(cell)];
-  Star star;
-  bool mirrored = false;
-  for (int k = 0; k < star_size(word); ++k) {
-    const std::int32_t x = i + columns_away(star_code(word, k));
-    const std::int32_t y = j + rows_away(star_code(word, k));
+// Turns a star's mirrored neighbours into the box's sides: once a side, and none across a box
+// corner. Long stars and those that change become lists.
+void unfold(Stars& stars, const Sites& sites, const LongStar& codes) {
+  const auto j = static_cast<std::int32_t>(codes.cell) / sites.columns;
+  const auto i = static_cast<std::int32_t>(codes.cell) % sites.columns;
+  std::int32_t star[kLongest];
+  std::size_t size = 0;
+  bool changes = codes.high != 0;
+  for (StarWord rest = codes.low, next = codes.high; rest != 0;) {
+    const StarCode code = star_code(rest, 0);
+    rest = rest >> 8 | next << 56;
+    next >>= 8;
+    const std::int32_t x = i + columns_away(code), y = j + rows_away(code);
     const bool beside = x < 0 || x >= sites.columns, above = y < 0 || y >= sites.rows;
-    mirrored |= beside || above;
+    changes |= beside || above;
     if (beside && above) continue;
     const std::int32_t side = beside ? (x < 0 ? 3 : 1) : (y < 0 ? 0 : 2);
     const std::int32_t neighbour = beside || above ? ~side : y * sites.columns + x;
-    if (star.empty() || star.back() != neighbour) star.push_back(neighbour);
+    if (size == 0 || star[size - 1] != neighbour) star[size++] = neighbour;
   }
-  if (star.size() > 1 && star.front() == star.back()) star.pop_back();
-  if (mirrored) stars.assign(static_cast<std::uint32_t>(cell), star);
+  if (size > 1 && star[0] == star[size - 1]) --size;
+  if (changes) stars.assign(codes.cell, {star, size});
 }
 
 void unfold_border(Stars& stars, const Sites& sites) {
@@ -107,32 +111,53 @@ void unfold_border(Stars& stars, const Sites& sites) {
     const bool whole_row = j < kPadLow || j >= rows - kPadLow;
     for (std::int32_t i = 0; i < columns; ++i) {
       if (!whole_row && i == kPadLow) i = columns - kPadLow;
-      unfold(stars, sites, i, j);
+      const auto cell = static_cast<std::uint32_t>(j * columns + i);
+      if (!stars.is_list(cell)) unfold(stars, sites, {stars.words[cell], 0, cell});
     }
   }
+}
+
+// The kernel over the rows of one band. Returns the stars that do not fit a word.
+std::vector<LongStar> propose_band(Stars& stars, const PaddedGrid& grid, bool avx2,
+                                   std::int32_t begin, std::int32_t end) {
+  const std::size_t size =
+      static_cast<std::size_t>(kScratchRows) * static_cast<std::size_t>(grid.stride);
+  std::vector<StarWord> words(size);
+  RawVector<LongStar> longs(size), found(2 * static_cast<std::size_t>(grid.columns));
+  std::vector<LongStar> result;
+  for (std::int32_t row = begin; row < end; row += 2) {
+    const std::int32_t count = (avx2 ? propose_avx2 : propose_portable)(
+        grid, row, end, stars.words.data(), {words.data(), longs.data()}, found.data());
+    result.insert(result.end(), found.begin(), found.begin() + count);
+  }
+  return result;
+}
+
+void propose_gridded(Stars& stars, const Sites& sites, bool avx2, int threads) {
+  const PaddedSites padded = pad(sites);
+  std::vector<std::vector<LongStar>> longs(static_cast<std::size_t>(threads));
+  in_bands(threads, sites.rows, stars.cell_count(),
+           [&](int band, std::int64_t begin, std::int64_t end) {
+             longs[static_cast<std::size_t>(band)] =
+                 propose_band(stars, padded.grid, avx2, static_cast<std::int32_t>(begin),
+                              static_cast<std::int32_t>(end));
+           });
+  for (const std::vector<LongStar>& band : longs)
+    for (const LongStar& star : band) unfold(stars, sites, star);
+  unfold_border(stars, sites);
 }
 
 // Proposes every cell. Returns those that a kernel left open, and that its other cells may
 // therefore not agree with.
 std::vector<std::uint32_t> propose(Stars& stars, const Sites& sites, const Buckets& buckets,
                                    bool avx2, int threads) {
+  const bool gridded = suits_kernels(sites);
+  if (gridded) propose_gridded(stars, sites, avx2, threads);
   std::vector<std::uint32_t> open;
-  if (suits_kernels(sites)) {
-    const PaddedSites padded = pad(sites);
-    in_bands(
-        threads, sites.rows, stars.cell_count(), [&](int, std::int64_t begin, std::int64_t end) {
-          std::vector<StarWord> scratch(static_cast<std::size_t>(kScratchRows) *
-                                        static_cast<std::size_t>(padded.grid.stride));
-          (avx2 ? propose_avx2 : propose_portable)(padded.grid, static_cast<std::int32_t>(begin),
-                                                   static_cast<std::int32_t>(end),
-                                                   stars.words.data(), scratch.data());
-        });
-    unfold_border(stars, sites);
-  }
   for (std::uint32_t cell = 0; cell < stars.cell_count(); ++cell) {
     if (stars.words[cell] != 0) continue;
     stars.assign(cell, clip_cell_fast(sites, buckets, cell));
-    if (suits_kernels(sites)) open.push_back(cell);
+    if (gridded) open.push_back(cell);
   }
   return open;
 }

@@ -8,32 +8,37 @@
 namespace sunder {
 namespace {
 
-// The candidates in three registers of eight.
+// The candidates in two registers of eight and one of four.
 class Pivot {
  public:
   struct Tag {};
   static Tag tag() { return {}; }
 
   explicit Pivot(const PaddedSite& site) : site_(site) {
-    gather(site.grid->x + site.index, x_);
-    gather(site.grid->y + site.index, y_);
-    for (int v = 0; v < 3; ++v)
+    gather(site.grid->x + site.index, x_, last_x_);
+    gather(site.grid->y + site.index, y_, last_y_);
+    for (int v = 0; v < 2; ++v)
       square_[v] = _mm256_add_ps(_mm256_mul_ps(x_[v], x_[v]), _mm256_mul_ps(y_[v], y_[v]));
+    last_square_ = _mm_add_ps(_mm_mul_ps(last_x_, last_x_), _mm_mul_ps(last_y_, last_y_));
   }
 
   StarCode next(StarCode from) const {
     const float fx = static_cast<float>(relative_x(site_, from));
     const float fy = static_cast<float>(relative_y(site_, from));
     const __m256 x = _mm256_set1_ps(fx), y = _mm256_set1_ps(fy);
-    const __m256 a = cotangent(x, y, 0), b = cotangent(x, y, 1), c = cotangent(x, y, 2);
-    const __m256 abc = _mm256_min_ps(_mm256_min_ps(a, b), c);
-    __m128 low = _mm_min_ps(_mm256_castps256_ps128(abc), _mm256_extractf128_ps(abc, 1));
+    const __m256 a = cotangent(x, y, 0), b = cotangent(x, y, 1);
+    const __m128 c = last_cotangent(_mm256_castps256_ps128(x), _mm256_castps256_ps128(y));
+    const __m256 ab = _mm256_min_ps(a, b);
+    __m128 low = _mm_min_ps(_mm256_castps256_ps128(ab), _mm256_extractf128_ps(ab, 1));
+    low = _mm_min_ps(low, c);
     low = _mm_min_ps(low, _mm_movehl_ps(low, low));
     low = _mm_min_ss(low, _mm_movehdup_ps(low));
     const float least = _mm_cvtss_f32(low);
     if (!(least < kNever)) return 0;
     const __m256 limits = _mm256_set1_ps(near_tie_limit(least));
-    const unsigned near = within(a, limits) | within(b, limits) << 8 | within(c, limits) << 16;
+    const auto last = static_cast<unsigned>(
+        _mm_movemask_ps(_mm_cmp_ps(c, _mm256_castps256_ps128(limits), _CMP_LE_OQ)));
+    const unsigned near = within(a, limits) | within(b, limits) << 8 | last << 16;
     if ((near & (near - 1)) != 0) return best_of(site_, from, near);
     const StarCode code = static_cast<StarCode>(_mm_cvtsi128_si32(_mm_castps_si128(low))) & 0xFFu;
     const bool far = (fx * fx + fy * fy) * (1 + least * least) >= site_.grid->far;
@@ -52,21 +57,21 @@ class Pivot {
   static unsigned within(__m256 values, __m256 limits) {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(values, limits, _CMP_LE_OQ)));
   }
-  static __m128i load(const std::int32_t* from) {
-    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+  static __m256i load(const std::int32_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
   }
 
-  void gather(const std::int32_t* here, __m256* out) {
+  void gather(const std::int32_t* here, __m256 (&out)[2], __m128& last) {
     const std::int64_t stride = site_.grid->stride;
     const __m256i origin = _mm256_set1_epi32(*here);
-    const auto keep = [&](__m128i low, __m128i high) {
-      return _mm256_cvtepi32_ps(_mm256_sub_epi32(_mm256_set_m128i(high, low), origin));
+    const auto keep = [&](__m256i places) {
+      return _mm256_cvtepi32_ps(_mm256_sub_epi32(places, origin));
     };
-    out[0] = keep(load(here - stride - 2), load(here - 1));
-    out[1] = keep(load(here + stride - 2), load(here + 2 * stride - 2));
-    const __m128i ends =
-        _mm_set_epi32(here[2 + 2 * stride], here[2 + stride], here[2 - stride], here[-2]);
-    out[2] = keep(ends, load(here - 2 * stride - 2));
+    const __m256i above = _mm256_blend_epi32(load(here + stride - 3), load(here - 5), 0xC0);
+    out[0] = keep(_mm256_blend_epi32(above, load(here - 2), 0x01));
+    out[1] = keep(_mm256_blend_epi32(load(here + 2 * stride - 3), load(here - stride - 5), 0xC0));
+    const __m128i below = _mm_loadu_si128(reinterpret_cast<const __m128i*>(here - stride - 3));
+    last = _mm_cvtepi32_ps(_mm_sub_epi32(below, _mm256_castsi256_si128(origin)));
   }
 
   __m256 cotangent(__m256 x, __m256 y, int v) const {
@@ -82,8 +87,20 @@ class Pivot {
     return _mm256_blendv_ps(_mm256_set1_ps(kNever), named, is_left);
   }
 
+  __m128 last_cotangent(__m128 x, __m128 y) const {
+    const __m128 left = _mm_sub_ps(_mm_mul_ps(x, last_y_), _mm_mul_ps(y, last_x_));
+    const __m128 along = _mm_add_ps(_mm_mul_ps(x, last_x_), _mm_mul_ps(y, last_y_));
+    const __m128 value = _mm_div_ps(_mm_sub_ps(last_square_, along), left);
+    const __m128 is_left = _mm_cmp_ps(left, _mm_setzero_ps(), _CMP_GT_OQ);
+    const __m128i code = _mm_loadu_si128(reinterpret_cast<const __m128i*>(kCandidateCode + 16));
+    const __m128 named = _mm_or_ps(_mm_and_ps(value, _mm_castsi128_ps(_mm_set1_epi32(~0xFF))),
+                                   _mm_castsi128_ps(code));
+    return _mm_blendv_ps(_mm_set1_ps(kNever), named, is_left);
+  }
+
   PaddedSite site_;
-  __m256 x_[3], y_[3], square_[3];
+  __m256 x_[2], y_[2], square_[2];
+  __m128 last_x_, last_y_, last_square_;
 };
 
 // Lane k of row n: the lane before and after k around n lanes.
@@ -197,9 +214,9 @@ bool has_avx2() {
          __builtin_cpu_supports("bmi2");
 }
 
-void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
-                  StarWord* words, StarWord* scratch) {
-  propose_rows<Pivot>(grid, row_begin, row_end, words, scratch);
+std::int32_t propose_avx2(const PaddedGrid& grid, std::int32_t row, std::int32_t row_end,
+                          StarWord* words, KernelScratch scratch, LongStar* longs) {
+  return propose_rows<Pivot>(grid, row, row_end, words, scratch, longs);
 }
 
 }  // namespace sunder
@@ -217,9 +234,9 @@ std::uint32_t doubtful_cells_avx2(const StarWord*, const std::int32_t*, std::int
   return 0;
 }
 
-void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
-                  StarWord* words, StarWord* scratch) {
-  propose_portable(grid, row_begin, row_end, words, scratch);
+std::int32_t propose_avx2(const PaddedGrid& grid, std::int32_t row, std::int32_t row_end,
+                          StarWord* words, KernelScratch scratch, LongStar* longs) {
+  return propose_portable(grid, row, row_end, words, scratch, longs);
 }
 
 }  // namespace sunder

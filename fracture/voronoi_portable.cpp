@@ -45,9 +45,8 @@ class Pivot {
       const Float4 named = (Float4)(((Int4)value & ~0xFF) | code);
       cotangent[v] = left > 0 ? named : Float4{kNever, kNever, kNever, kNever};
     }
-    const Float4 low =
-        lower(lower(lower(cotangent[0], cotangent[1]), lower(cotangent[2], cotangent[3])),
-              lower(cotangent[4], cotangent[5]));
+    const Float4 low = lower(
+        lower(lower(cotangent[0], cotangent[1]), lower(cotangent[2], cotangent[3])), cotangent[4]);
     const float a = low[0] < low[1] ? low[0] : low[1], b = low[2] < low[3] ? low[2] : low[3];
     const float least = a < b ? a : b;
     if (!(least < kNever)) return 0;
@@ -73,12 +72,14 @@ class Pivot {
     const auto keep = [&](int v, Int4 places) {
       out[v] = __builtin_convertvector(places - origin, Float4);
     };
-    keep(0, load(here - stride - 2));
-    keep(1, load(here - 1));
-    keep(2, load(here + stride - 2));
-    keep(3, load(here + 2 * stride - 2));
-    keep(5, load(here - 2 * stride - 2));
-    keep(4, Int4{here[-2], here[2 - stride], here[2 + stride], here[2 + 2 * stride]});
+    const auto halves = [&](const std::int32_t* low, const std::int32_t* high) {
+      return __builtin_shuffle(load(low), load(high - 2), Int4{0, 1, 6, 7});
+    };
+    keep(0, __builtin_shuffle(load(here - 2), load(here + stride - 3), Int4{0, 5, 6, 7}));
+    keep(1, halves(here + stride + 1, here + 1));
+    keep(2, load(here + 2 * stride - 3));
+    keep(3, halves(here + 2 * stride + 1, here - stride + 1));
+    keep(4, load(here - stride - 3));
   }
 
   PaddedSite site_;
@@ -87,9 +88,9 @@ class Pivot {
 
 }  // namespace
 
-void propose_portable(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
-                      StarWord* words, StarWord* scratch) {
-  propose_rows<Pivot>(grid, row_begin, row_end, words, scratch);
+std::int32_t propose_portable(const PaddedGrid& grid, std::int32_t row, std::int32_t row_end,
+                              StarWord* words, KernelScratch scratch, LongStar* longs) {
+  return propose_rows<Pivot>(grid, row, row_end, words, scratch, longs);
 }
 
 }  // namespace sunder

@@ -10,7 +10,7 @@ namespace sunder {
 /// A star word holds a cell's neighbours as up to eight bytes, counter-clockwise from the lowest: a
 /// neighbour i columns and j rows away is the byte 16 (j + 8) + i + 8, so bytes order like sites
 /// and differences of bytes are differences of places. Bytes behind the last neighbour are 0. A
-/// word that is 0 says nothing (more than eight neighbours, or a search that failed).
+/// word that is 0 says nothing (too many neighbours, or a search that failed).
 ///
 /// Every function here is `static` or takes a type of the including file: what the AVX2 file
 /// compiles must never be what the linker keeps for processors without AVX2.
@@ -31,17 +31,32 @@ struct PaddedGrid {
   float far = 0;
 };
 
-/// Rows of star words a kernel keeps, mirrored columns included: two in work, and neighbours reach
-/// three rows down.
-constexpr std::int32_t kScratchRows = 8;
+/// A star of nine to sixteen neighbours: the first eight and the others, as found (not turned).
+struct LongStar {
+  StarWord low, high;
+  std::uint32_t cell;
+};
+constexpr int kLongest = 16;
+/// Stands in the scratch rows for a star word that is too long.
+constexpr StarWord kLong = StarWord{0xFF} << 56;
 
-/// Proposes rows [row_begin, row_end) into words (rows × columns of the whole grid). `scratch` is
-/// kScratchRows * stride words of 0.
-void propose_portable(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
-                      StarWord* words, StarWord* scratch);
+/// What a kernel remembers between rows: the star words of the last rows, mirrored columns included
+/// (two in work, and neighbours reach three rows down), and what stands behind kLong. All zero at
+/// first; kScratchRows * stride each.
+constexpr std::int32_t kScratchRows = 8;
+struct KernelScratch {
+  StarWord* words;
+  LongStar* longs;
+};
+
+/// Proposes rows row and row + 1 (only `row` if it is the last) into words (rows × columns of the
+/// whole grid) and those that do not fit into `longs` (room for both rows). Rows come in order.
+/// Returns how many do not fit; a cell with more than sixteen neighbours gets the word 0.
+std::int32_t propose_portable(const PaddedGrid& grid, std::int32_t row, std::int32_t row_end,
+                              StarWord* words, KernelScratch scratch, LongStar* longs);
 /// The same, eight candidates at a time; only if has_avx2().
-void propose_avx2(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
-                  StarWord* words, StarWord* scratch);
+std::int32_t propose_avx2(const PaddedGrid& grid, std::int32_t row, std::int32_t row_end,
+                          StarWord* words, KernelScratch scratch, LongStar* longs);
 
 /// Writes the cells of [begin, end) whose star word does not hold for certain to `doubtful` (room
 /// for all) and returns how many. For certain means exactly: every corner turns left, every edge is
@@ -81,6 +96,10 @@ std::uint32_t doubtful_cells_avx2(const StarWord* words, const std::int32_t* xy,
 [[maybe_unused]] static inline StarCode star_before(StarWord word, int k) {
   const int size = star_size(word);
   return star_code(word, k - 1 + (static_cast<int>(k == 0) * size));
+}
+/// The code after place k, around the star.
+[[maybe_unused]] static inline StarCode star_after(StarWord word, int k) {
+  return star_code(word, k + 1 == star_size(word) ? 0 : k + 1);
 }
 /// Place of the smallest code.
 [[maybe_unused]] static inline int star_first(StarWord word, int size) {
@@ -123,14 +142,14 @@ struct PaddedSite {
   return site.grid->y[index_of(site, code)] - site.grid->y[site.index];
 }
 
-/// Where the third site of an empty circle around a site lies when the second comes later, in the
-/// order in which the kernels load them: all places but those more than two cells away, which need
-/// a large circle, and few that did not occur in 10^6 cells at full jitter. Relative positions are
-/// below 2^23, so float32 holds them exactly.
-constexpr int kCandidates = 24;
-constexpr std::int32_t kCandidateCode[kCandidates] = {
-    0x76, 0x77, 0x78, 0x79, 0x87, 0x88, 0x89, 0x8A, 0x96, 0x97, 0x98, 0x99,
-    0xA6, 0xA7, 0xA8, 0xA9, 0x86, 0x7A, 0x9A, 0xAA, 0x66, 0x67, 0x68, 0x69};
+/// Where the third site of an empty circle around a site lies when the second comes later and is
+/// not the last of the turn, in the order in which the kernels load them: all places but those more
+/// than two cells away, which need a large circle, and few that did not occur in 10^6 cells at full
+/// jitter. Relative positions are below 2^23, so float32 holds them exactly.
+constexpr int kCandidates = 20;
+constexpr std::int32_t kCandidateCode[kCandidates] = {0x86, 0x96, 0x97, 0x98, 0x99, 0x9A, 0x89,
+                                                      0x8A, 0xA5, 0xA6, 0xA7, 0xA8, 0xA9, 0xAA,
+                                                      0x79, 0x7A, 0x75, 0x76, 0x77, 0x78};
 [[maybe_unused]] static inline float near_tie_limit(float least) {
   return least + kNearTie * (1 + (least < 0 ? -least : least));
 }
@@ -182,8 +201,8 @@ static StarCode pivot_in_window(const PaddedSite& site, StarCode from, Tag) {
 /// The winner of the candidates, or a site more than two cells away that wins over it.
 template <class Tag>
 static StarCode better_afar(const PaddedSite& site, StarCode from, StarCode candidate, Tag) {
-  constexpr StarCode afar[] = {0x57, 0x58, 0x59, 0x75, 0x7B, 0x85,
-                               0x8B, 0x95, 0x9B, 0xB7, 0xB8, 0xB9};
+  constexpr StarCode afar[] = {0x57, 0x58, 0x59, 0x67, 0x68, 0x69, 0x7B,
+                               0x85, 0x8B, 0x95, 0x9B, 0xB7, 0xB8, 0xB9};
   Sight best = sight_of(site, from, candidate);
   for (const StarCode code : afar) {
     const Sight other = sight_of(site, from, code);
@@ -208,7 +227,8 @@ static StarCode nearest_in_window(const PaddedSite& site, Tag) {
 
 /// One turn around a site. The triangle to the left of a known edge is read from the star of a
 /// neighbour that came before (so stars agree by construction); only a triangle whose other two
-/// sites come later is searched, among the later sites: two searches a site.
+/// sites come later is searched, among the later sites: two searches a site. Where the turn ends is
+/// read from the star of its first neighbour.
 /// Pivot(site) prepares the search around a site, next(code) is the search, first(word, size) the
 /// place of the smallest code.
 template <class Pivot>
@@ -216,96 +236,185 @@ struct Turn {
   PaddedSite site;
   Pivot pivot;
   const StarWord* const* row;  ///< row[d]: stars of the row d below, at column 0
+  const LongStar* const* longs;
   std::int32_t column;
-  StarCode first, code;  ///< code 0: given up
-  StarWord word = 0;
+  StarCode first;
+  StarCode last;  ///< the neighbour before the first, 0 if that is not known yet
+  StarCode code;  ///< 0: given up
+  StarWord word = 0, high = 0;
   int size = 0;
 };
 
-template <class Pivot>
-static inline Turn<Pivot> start_turn(const PaddedGrid& grid, const StarWord* const* row,
-                                     std::int32_t j, std::int32_t i) {
-  const PaddedSite site{&grid, (j + kPadLow) * std::int64_t{grid.stride} + i + kPadLow};
-  StarCode first;
-  if (star_find(row[0][i - 1], kHere + 1) < 8)
-    first = kHere - 1;
-  else if (star_find(row[1][i], kHere + 16) < 8)
-    first = kHere - 16;
-  else if (star_find(row[1][i + 1], kHere + 15) < 8)
-    first = kHere - 15;
-  else
-    first = nearest_in_window(site, Pivot::tag());
-  return {site, Pivot(site), row, i, first, first};
+/// The star's code before or after (`way` -1, 1) a site that it may list; 0 if it does not.
+[[maybe_unused]] static StarCode beside_in_long(const LongStar& star, StarCode code, int way) {
+  const int size = 8 + star_size(star.high);
+  for (int k = 0; k < size; ++k) {
+    const auto at = [&](int n) {
+      return n < 8 ? star_code(star.low, n) : star_code(star.high, n - 8);
+    };
+    if (at(k) == code) return at((k + way + size) % size);
+  }
+  return 0;
 }
 
-/// Notes a neighbour and goes to the next. False when the turn is over.
+/// The neighbour clockwise of one that came before, by its star; 0 if that star does not list the
+/// site.
+[[maybe_unused]] static inline StarCode clockwise_of(const StarWord* const* row,
+                                                     const LongStar* const* longs,
+                                                     std::int32_t column, StarCode code) {
+  const std::int32_t down = -rows_away(code), at = column + columns_away(code);
+  const StarWord other = row[down][at];
+  const int place = star_find(other, reverse(code));
+  StarCode after = 0;
+  if (place < 8)
+    after = star_after(other, place);
+  else if (other == kLong)
+    after = beside_in_long(longs[down][at], reverse(code), 1);
+  return after == 0 ? 0 : (after + code - kHere) & 0xFFu;
+}
+
 template <class Pivot>
-[[gnu::always_inline]] static inline bool step(Turn<Pivot>& turn) {
+static inline Turn<Pivot> start_turn(const PaddedGrid& grid, const StarWord* const* row,
+                                     const LongStar* const* longs, std::int32_t j, std::int32_t i) {
+  const PaddedSite site{&grid, (j + kPadLow) * std::int64_t{grid.stride} + i + kPadLow};
+  // Clockwise, so that the first comes right after the later neighbours.
+  StarCode first = 0, last = 0;
+  constexpr StarCode earlier[] = {kHere - 1, kHere - 2, kHere - 17, kHere - 16, kHere - 15};
+  for (const StarCode code : earlier) {
+    last = clockwise_of(row, longs, i, code);
+    if (last == 0) continue;
+    first = code;
+    break;
+  }
+  if (first == 0) {
+    first = nearest_in_window(site, Pivot::tag());
+  } else if (last < kHere) {
+    const StarCode before = clockwise_of(row, longs, i, last);
+    if (before != 0) first = last, last = before;
+  }
+  return {site, Pivot(site), row, longs, i, first, last, first};
+}
+
+/// The next neighbour after one that came before and whose star word does not list the site.
+template <class Pivot>
+static StarCode after_unlisted(const Turn<Pivot>& turn, StarCode code) {
+  const std::int32_t down = -rows_away(code), at = turn.column + columns_away(code);
+  const StarWord other = turn.row[down][at];
+  if (other == 0) return pivot_in_window(turn.site, code, Pivot::tag());
+  // A star that was found without this site contradicts it.
+  if (other != kLong) return 0;
+  const StarCode before = beside_in_long(turn.longs[down][at], reverse(code), -1);
+  return before == 0 ? 0 : (before + code - kHere) & 0xFFu;
+}
+
+/// Goes to the next neighbour. False when the turn is over.
+template <class Pivot>
+[[gnu::always_inline]] static inline bool advance(Turn<Pivot>& turn) {
   const StarCode code = turn.code;
-  turn.word |= StarWord{code} << (8 * turn.size++);
+  if (code == turn.last) {
+    turn.code = turn.first;
+    return false;
+  }
   if (code > kHere) {
-    turn.code = turn.pivot.next(code);
+    turn.code =
+        turn.last != 0 ? turn.pivot.next(code) : pivot_in_window(turn.site, code, Pivot::tag());
   } else {
     const StarWord other = turn.row[-rows_away(code)][turn.column + columns_away(code)];
     const int place = star_find(other, reverse(code));
-    if (place < 8) turn.code = (star_before(other, place) + code - kHere) & 0xFFu;
-    // A star that was found without this site contradicts it.
-    else
-      turn.code = other != 0 ? 0 : pivot_in_window(turn.site, code, Pivot::tag());
+    turn.code =
+        place < 8 ? (star_before(other, place) + code - kHere) & 0xFFu : after_unlisted(turn, code);
   }
-  return turn.code != turn.first && turn.code != 0 && turn.size < 8;
+  return turn.code != turn.first && turn.code != 0;
 }
 
+/// Notes a neighbour and goes to the next. False when the turn is over, or the word full.
 template <class Pivot>
-static inline StarWord star_of(const Turn<Pivot>& turn) {
-  if (turn.code != turn.first || turn.size < 3) return 0;
-  return star_turned(turn.word, turn.size, Pivot::first(turn.word, turn.size));
+[[gnu::always_inline]] static inline bool step(Turn<Pivot>& turn) {
+  turn.word |= StarWord{turn.code} << (8 * turn.size++);
+  return advance(turn) && turn.size < 8;
 }
 
-/// Two rows at a time, the upper one kSkew columns behind, so that the processor has two chains of
-/// dependent steps to work on and the upper row still finds all earlier stars.
+/// The ninth and later neighbours.
 template <class Pivot>
-static void propose_rows(const PaddedGrid& grid, std::int32_t row_begin, std::int32_t row_end,
-                         StarWord* words, StarWord* scratch) {
+[[gnu::noinline]] static void go_on(Turn<Pivot>& turn) {
+  bool more = true;
+  while (more && turn.size < kLongest) {
+    turn.high |= StarWord{turn.code} << (8 * (turn.size++ - 8));
+    more = advance(turn);
+  }
+  if (more) turn.code = 0;
+}
+
+/// Where the stars of two rows go.
+struct StarRows {
+  StarWord* words;  ///< row 0, column 0 of the grid
+  LongStar* longs;
+  std::int32_t long_count, columns;
+};
+
+template <class Pivot>
+static inline void keep_star(Turn<Pivot>& turn, std::int32_t y, StarWord* row, LongStar* long_row,
+                             StarRows& out) {
+  if (turn.size == 8 && turn.code != turn.first && turn.code != 0) go_on(turn);
+  const std::int64_t cell = y * std::int64_t{out.columns} + turn.column;
+  const bool closed = turn.code == turn.first && turn.size >= 3;
+  if (closed && turn.size > 8) {
+    const LongStar star = {turn.word, turn.high, static_cast<std::uint32_t>(cell)};
+    row[turn.column] = kLong;
+    long_row[turn.column] = star;
+    out.longs[out.long_count++] = star;
+    return;
+  }
+  const StarWord word =
+      closed ? star_turned(turn.word, turn.size, Pivot::first(turn.word, turn.size)) : 0;
+  row[turn.column] = word;
+  out.words[cell] = word;
+}
+
+/// Two rows, the upper one kSkew columns behind, so that the processor has two chains of dependent
+/// steps to work on and the upper row still finds all earlier stars.
+template <class Pivot>
+static std::int32_t propose_rows(const PaddedGrid& grid, std::int32_t j, std::int32_t row_end,
+                                 StarWord* words, KernelScratch scratch, LongStar* long_stars) {
   constexpr std::int32_t kSkew = 4;
-  const auto scratch_row = [&](std::int32_t j) {
-    return scratch + (j & (kScratchRows - 1)) * std::int64_t{grid.stride} + kPadLow;
+  const bool pair = j + 1 < row_end;
+  StarWord* row[5];  // from the upper one down
+  LongStar* longs[5];
+  for (int d = 0; d < 5; ++d) {
+    const std::int64_t at =
+        ((j + 1 - d) & (kScratchRows - 1)) * std::int64_t{grid.stride} + kPadLow;
+    row[d] = scratch.words + at, longs[d] = scratch.longs + at;
+  }
+  // The oldest rows are used again: nothing may be found there before it is written.
+  for (std::int32_t i = 0; i < grid.columns; ++i) row[0][i] = row[1][i] = 0;
+  StarRows out{words, long_stars, 0, grid.columns};
+  const auto low_turn = [&](std::int32_t i) {
+    return start_turn<Pivot>(grid, row + 1, longs + 1, j, i);
   };
-  for (std::int32_t j = row_begin; j < row_end; j += 2) {
-    const bool pair = j + 1 < row_end;
-    const StarWord *low[4], *high[4];
-    for (int d = 0; d < 4; ++d) low[d] = scratch_row(j - d), high[d] = scratch_row(j + 1 - d);
-    StarWord *low_out = scratch_row(j), *high_out = scratch_row(j + 1);
-    // The oldest rows are used again: nothing may be found there before it is written.
-    for (std::int32_t i = 0; i < grid.columns; ++i) low_out[i] = high_out[i] = 0;
-    const auto keep = [&](const Turn<Pivot>& turn, std::int32_t y, StarWord* out) {
-      const StarWord word = star_of(turn);
-      out[turn.column] = word;
-      words[y * std::int64_t{grid.columns} + turn.column] = word;
-    };
-    for (std::int32_t i = 0; i < grid.columns + kSkew; ++i) {
-      const bool lower = i < grid.columns, upper = pair && i >= kSkew;
-      if (lower && upper) {
-        Turn<Pivot> a = start_turn<Pivot>(grid, low, j, i);
-        Turn<Pivot> b = start_turn<Pivot>(grid, high, j + 1, i - kSkew);
-        bool more_a, more_b;
-        do {
-          more_a = step(a);
-          more_b = step(b);
-        } while (more_a && more_b);
-        while (more_a) more_a = step(a);
-        while (more_b) more_b = step(b);
-        keep(a, j, low_out);
-        keep(b, j + 1, high_out);
-      } else if (lower || upper) {
-        Turn<Pivot> a = lower ? start_turn<Pivot>(grid, low, j, i)
-                              : start_turn<Pivot>(grid, high, j + 1, i - kSkew);
-        while (step(a)) {
-        }
-        keep(a, lower ? j : j + 1, lower ? low_out : high_out);
+  const auto high_turn = [&](std::int32_t i) {
+    return start_turn<Pivot>(grid, row, longs, j + 1, i - kSkew);
+  };
+  for (std::int32_t i = 0; i < grid.columns + kSkew; ++i) {
+    const bool lower = i < grid.columns, upper = pair && i >= kSkew;
+    if (lower && upper) {
+      Turn<Pivot> a = low_turn(i), b = high_turn(i);
+      bool more_a, more_b;
+      do {
+        more_a = step(a);
+        more_b = step(b);
+      } while (more_a && more_b);
+      while (more_a) more_a = step(a);
+      while (more_b) more_b = step(b);
+      keep_star(a, j, row[1], longs[1], out);
+      keep_star(b, j + 1, row[0], longs[0], out);
+    } else if (lower || upper) {
+      Turn<Pivot> a = lower ? low_turn(i) : high_turn(i);
+      while (step(a)) {
       }
+      keep_star(a, lower ? j : j + 1, row[lower], longs[lower], out);
     }
   }
+  return out.long_count;
 }
 
 }  // namespace sunder

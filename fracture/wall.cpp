@@ -18,7 +18,6 @@ constexpr Range kRadius{1e-6, 1e6};      // m
 constexpr Range kThickness{1e-9, 1e4};   // m
 constexpr Range kMinCell{0, 1e4};        // m
 
-constexpr std::string_view kDestroyModes[] = {"quads", "points"};
 constexpr std::string_view kSides[] = {"bottom", "left", "right", "top"};
 
 Quaternion product(const Quaternion& a, const Quaternion& b) {
@@ -148,11 +147,6 @@ std::span<const Field<QuadGridParams>> fields() {
   static const Field<P> table[] = {
       {"cell", &P::cell, "m", "Size of the grid cells; each becomes one quad.", kCell},
       {"jitter", &P::jitter, "", "How far a grid point may move, in half cells.", kJitter},
-      {.name = "destroy",
-       .member = &P::destroy,
-       .unit = "",
-       .effect = "What a hit removes: quads, or grid points with every quad that uses them.",
-       .choices = kDestroyModes},
   };
   return table;
 }

@@ -34,11 +34,10 @@ struct VoronoiFocusParams {
   double radius = 1.0;
   double share = 0.7;
 };
-/// Jittered grid points joined to their cardinal neighbours; `destroy` says what a hit removes.
+/// Jittered grid points joined to their cardinal neighbours.
 struct QuadGridParams {
   double cell = 0.3;
   double jitter = 0.7;
-  std::string destroy = "quads";  ///< "quads" or "points"
 };
 
 /// The generators, by the `type` a scene names them with (see pattern_type).

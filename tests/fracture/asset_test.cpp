@@ -66,7 +66,7 @@ TEST_P(AssetOverSeeds, EveryWallIsSound) {
     wall.position = {at.x, at.y, 0};
     const double cell = size / (3 + 5 * random_unit(seed, 5));
     if (seed % 3 == 0)
-      wall.pattern = QuadGridParams{cell, GetParam(), "quads"};
+      wall.pattern = QuadGridParams{cell, GetParam()};
     else
       wall.pattern = VoronoiGridParams{cell, GetParam()};
     if (seed % 2 == 0)

@@ -12,7 +12,7 @@ namespace sunder {
 namespace {
 
 std::vector<PatternParams> generators() {
-  return {VoronoiGridParams{0.2, 1}, VoronoiGridParams{0.2, 0}, QuadGridParams{0.2, 0.9, "quads"},
+  return {VoronoiGridParams{0.2, 1}, VoronoiGridParams{0.2, 0}, QuadGridParams{0.2, 0.9},
           VoronoiRandomParams{300}, SpiderwebParams{.impacts = {{3, 1.5}, {5, 0.5}}}};
 }
 

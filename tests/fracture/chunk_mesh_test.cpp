@@ -11,9 +11,9 @@ namespace sunder {
 namespace {
 
 std::vector<PatternParams> generators() {
-  return {VoronoiGridParams{0.3, 1},       VoronoiGridParams{0.3, 0},
-          VoronoiRandomParams{150},        VoronoiFocusParams{{{3, 1.5}}, 150, 1, 0.7},
-          QuadGridParams{0.3, 1, "quads"}, SpiderwebParams{.impacts = {{3, 1.5}}}};
+  return {VoronoiGridParams{0.3, 1}, VoronoiGridParams{0.3, 0},
+          VoronoiRandomParams{150},  VoronoiFocusParams{{{3, 1.5}}, 150, 1, 0.7},
+          QuadGridParams{0.3, 1},    SpiderwebParams{.impacts = {{3, 1.5}}}};
 }
 
 WallAsset asset_of(const PatternParams& params, std::uint64_t seed, bool openings,

@@ -29,8 +29,8 @@ std::vector<PatternParams> grids(double cell) {
   return {VoronoiGridParams{cell, 1.0},
           VoronoiGridParams{cell, 0.5},
           VoronoiGridParams{cell, 0.0},
-          QuadGridParams{cell, 0.9, "quads"},
-          QuadGridParams{cell, 0.0, "quads"},
+          QuadGridParams{cell, 0.9},
+          QuadGridParams{cell, 0.0},
           VoronoiRandomParams{1 + static_cast<std::int64_t>(18 / (cell * cell))}};
 }
 
@@ -59,8 +59,8 @@ TEST(Cut, CellsTileAWallWithDoorAndWindows) {
 
 // A quarter of a metre divides everything: corners on cell corners, edges on cell edges.
 TEST(Cut, OpeningsThatFollowTheGridLeaveWholeSquares) {
-  for (const PatternParams& params : {PatternParams(VoronoiGridParams{0.25, 0}),
-                                      PatternParams(QuadGridParams{0.25, 0, "quads"})}) {
+  for (const PatternParams& params :
+       {PatternParams(VoronoiGridParams{0.25, 0}), PatternParams(QuadGridParams{0.25, 0})}) {
     Wall wall;
     wall.pattern = params;
     wall.region.openings = {rectangle({1.0, 2.0}, {1, 0}), rectangle({0.5, 0.75}, {3, 1}),
@@ -143,7 +143,7 @@ TEST(Cut, AFarOffsetAndAnExtremeSizeChangeNothing) {
 
 TEST(Cut, MirroringTheWallMirrorsTheCount) {
   Wall wall = door_and_windows();
-  wall.pattern = QuadGridParams{0.25, 0, "quads"};
+  wall.pattern = QuadGridParams{0.25, 0};
   const Pattern pattern = pattern_of(wall, 1);
   for (Loop& opening : wall.region.openings)
     for (Vec2& p : opening) p.x = 6 - p.x;

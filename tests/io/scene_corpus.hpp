@@ -70,8 +70,7 @@ inline constexpr const char* kFullScene = R"json({
     {"name": "c", "pattern": {"type": "voronoi-random", "count": 60}},
     {"name": "d", "pattern": {"type": "voronoi-focus", "points": [[3, 1]], "count": 90,
                               "radius": 0.5, "share": 0.6}},
-    {"name": "e", "pattern": {"type": "quad-grid", "cell": 0.4, "jitter": 0.5,
-                              "destroy": "points"}},
+    {"name": "e", "pattern": {"type": "quad-grid", "cell": 0.4, "jitter": 0.5}},
     {"name": "f", "pattern": {"type": "spiderweb", "impacts": [[3, 1.5]], "min_points": 6,
                               "max_points": 9, "min_radius": 0.2, "max_radius": 0.5, "rings": 3,
                               "radial": 8, "reach": 1.5, "rest_cell": 0.7}}

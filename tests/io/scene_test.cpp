@@ -127,7 +127,7 @@ TEST(Scene, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(focus.count, 90);
   EXPECT_EQ(focus.radius, 0.5);
   EXPECT_EQ(focus.share, 0.6);
-  EXPECT_EQ(std::get<QuadGridParams>(scene.walls[4].pattern).destroy, "points");
+  EXPECT_EQ(std::get<QuadGridParams>(scene.walls[4].pattern).cell, 0.4);
   const auto& web = std::get<SpiderwebParams>(scene.walls[5].pattern);
   EXPECT_EQ(web.impacts, (Loop{{3, 1.5}}));
   EXPECT_EQ(web.min_points, 6);
