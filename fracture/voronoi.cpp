@@ -60,10 +60,13 @@ PaddedSites pad(const Sites& sites) {
   PaddedGrid& grid = padded.grid;
   grid.columns = sites.columns, grid.rows = sites.rows;
   grid.stride = sites.columns + kPadLow + kPadHigh;
-  const std::int64_t size = std::int64_t{grid.stride} * (grid.rows + kPadLow + kPadHigh);
-  padded.x.resize(static_cast<std::size_t>(size));
-  padded.y.resize(static_cast<std::size_t>(size));
-  std::size_t at = 0;
+  // Codes of contradicting stars may reach kMargin rows and columns away.
+  const std::size_t begin =
+      static_cast<std::size_t>(kMargin) * static_cast<std::size_t>(grid.stride);
+  const auto rows = static_cast<std::size_t>(grid.rows + kPadLow + kPadHigh + 2 * kMargin);
+  padded.x.resize(rows * static_cast<std::size_t>(grid.stride));
+  padded.y.resize(rows * static_cast<std::size_t>(grid.stride));
+  std::size_t at = begin;
   for (std::int64_t j = -kPadLow; j < grid.rows + kPadHigh; ++j) {
     const Mirror row = mirror(j, grid.rows, sites.lattice.height);
     const Site* source = sites.points.data() + row.index * grid.columns;
@@ -75,7 +78,7 @@ PaddedSites pad(const Sites& sites) {
       padded.y[at] = row.mirrored ? static_cast<std::int32_t>(row.twice_axis - site.y) : site.y;
     }
   }
-  grid.x = padded.x.data(), grid.y = padded.y.data();
+  grid.x = padded.x.data() + begin, grid.y = padded.y.data() + begin;
   const auto side = static_cast<float>(std::min(sites.cell_width, sites.cell_height));
   grid.far = 4 * side * side;
   return padded;
@@ -122,12 +125,12 @@ std::vector<LongStar> propose_band(Stars& stars, const PaddedGrid& grid, bool av
                                    std::int32_t begin, std::int32_t end) {
   const std::size_t size =
       static_cast<std::size_t>(kScratchRows) * static_cast<std::size_t>(grid.stride);
-  std::vector<StarWord> words(size);
+  std::vector<StarWord> words(size + 2 * kMargin);
   RawVector<LongStar> longs(size), found(2 * static_cast<std::size_t>(grid.columns));
   std::vector<LongStar> result;
   for (std::int32_t row = begin; row < end; row += 2) {
     const std::int32_t count = (avx2 ? propose_avx2 : propose_portable)(
-        grid, row, end, stars.words.data(), {words.data(), longs.data()}, found.data());
+        grid, row, end, stars.words.data(), {words.data() + kMargin, longs.data()}, found.data());
     result.insert(result.end(), found.begin(), found.begin() + count);
   }
   return result;

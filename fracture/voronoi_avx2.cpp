@@ -39,8 +39,8 @@ class Pivot {
     const auto last = static_cast<unsigned>(
         _mm_movemask_ps(_mm_cmp_ps(c, _mm256_castps256_ps128(limits), _CMP_LE_OQ)));
     const unsigned near = within(a, limits) | within(b, limits) << 8 | last << 16;
-    if ((near & (near - 1)) != 0) return best_of(site_, from, near);
-    const StarCode code = static_cast<StarCode>(_mm_cvtsi128_si32(_mm_castps_si128(low))) & 0xFFu;
+    StarCode code = static_cast<StarCode>(_mm_cvtsi128_si32(_mm_castps_si128(low))) & 0xFFu;
+    if ((near & (near - 1)) != 0) code = best_of(site_, from, near);
     const bool far = (fx * fx + fy * fy) * (1 + least * least) >= site_.grid->far;
     return far ? better_afar(site_, from, code, Tag{}) : code;
   }

@@ -55,10 +55,10 @@ class Pivot {
     for (int v = 0; v < kVectors; ++v)
       near |= (cotangent[v] <= limit) & (Int4{1, 2, 4, 8} << (4 * v));
     const auto set = static_cast<unsigned>(near[0] | near[1] | near[2] | near[3]);
-    if ((set & (set - 1)) != 0) return best_of(site_, from, set);
     std::uint32_t bits;
     std::memcpy(&bits, &least, sizeof bits);
-    const StarCode code = bits & 0xFFu;
+    StarCode code = bits & 0xFFu;
+    if ((set & (set - 1)) != 0) code = best_of(site_, from, set);
     const bool far = (fx * fx + fy * fy) * (1 + least * least) >= site_.grid->far;
     return far ? better_afar(site_, from, code, Tag{}) : code;
   }

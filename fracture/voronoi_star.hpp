@@ -41,9 +41,10 @@ constexpr int kLongest = 16;
 constexpr StarWord kLong = StarWord{0xFF} << 56;
 
 /// What a kernel remembers between rows: the star words of the last rows, mirrored columns included
-/// (two in work, and neighbours reach three rows down), and what stands behind kLong. All zero at
-/// first; kScratchRows * stride each.
-constexpr std::int32_t kScratchRows = 8;
+/// (two in work, and neighbours reach three rows down), and what stands behind kLong. All words 0
+/// at first; kScratchRows * stride each, and kMargin words on both sides, which codes of
+/// contradicting stars may reach.
+constexpr std::int32_t kScratchRows = 8, kMargin = 8;
 struct KernelScratch {
   StarWord* words;
   LongStar* longs;
@@ -235,8 +236,8 @@ template <class Pivot>
 struct Turn {
   PaddedSite site;
   Pivot pivot;
-  const StarWord* const* row;  ///< row[d]: stars of the row d below, at column 0
-  const LongStar* const* longs;
+  const StarWord* const* row;    ///< row[d]: stars of the row d below, at column 0
+  const LongStar* const* longs;  ///< the same for long stars
   std::int32_t column;
   StarCode first;
   StarCode last;  ///< the neighbour before the first, 0 if that is not known yet
@@ -378,9 +379,10 @@ static std::int32_t propose_rows(const PaddedGrid& grid, std::int32_t j, std::in
                                  StarWord* words, KernelScratch scratch, LongStar* long_stars) {
   constexpr std::int32_t kSkew = 4;
   const bool pair = j + 1 < row_end;
-  StarWord* row[5];  // from the upper one down
-  LongStar* longs[5];
-  for (int d = 0; d < 5; ++d) {
+  constexpr int kReach = 10;  // whatever a code says
+  StarWord* row[kReach];      // from the upper one down
+  LongStar* longs[kReach];
+  for (int d = 0; d < kReach; ++d) {
     const std::int64_t at =
         ((j + 1 - d) & (kScratchRows - 1)) * std::int64_t{grid.stride} + kPadLow;
     row[d] = scratch.words + at, longs[d] = scratch.longs + at;
