@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "fracture/chunk_mesh.hpp"
+#include "fracture/inner_length.hpp"
 #include "fracture/measure.hpp"
 #include "meshing/error.hpp"
 #include "meshing/random.hpp"
@@ -18,7 +19,7 @@ namespace {
 void expect_sound(const Wall& wall, std::uint64_t seed, const std::string& what) {
   const WallAsset asset = fracture_wall(wall, 2400, {.seed = seed});
   const double expected = asset.volume_expected;
-  double sum = 0, smallest = std::numeric_limits<double>::infinity(), bonds = 0, inner = 0;
+  double sum = 0, smallest = std::numeric_limits<double>::infinity(), bonds = 0;
   for (const MassProperties& chunk : asset.chunks) {
     sum += chunk.volume;
     smallest = std::min(smallest, chunk.volume);
@@ -27,13 +28,7 @@ void expect_sound(const Wall& wall, std::uint64_t seed, const std::string& what)
   EXPECT_NEAR(sum, expected, 1e-13 * expected) << what;
   EXPECT_GT(smallest, 0) << what;
   for (const Bond& bond : asset.bonds) bonds += bond.area;
-  for (std::uint32_t c = 0; c < asset.pattern.cell_count(); ++c)
-    for (const LoopRange loop : loops_of(asset.pattern, c))
-      for (std::uint32_t k = loop.begin; k < loop.end; ++k)
-        if (!asset.pattern.across[k].is_border())
-          inner += length(asset.pattern.vertices[asset.pattern.corners[loop.next(k)]] -
-                          asset.pattern.vertices[asset.pattern.corners[k]]);
-  inner *= asset.wall.thickness;
+  const double inner = inner_length(asset.pattern) * asset.wall.thickness;
   EXPECT_NEAR(bonds, inner / 2, 1e-12 * inner) << what;
   const RenderMeshes meshes = render_meshes(asset);
   const Soundness s = measure({soup_of(asset, meshes)});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fracture/asset.hpp"
+#include "fracture/inner_length.hpp"
 
 namespace sunder {
 namespace {
@@ -48,13 +49,8 @@ TEST(Bonds, TheirAreaIsHalfTheInnerArea) {
   wall.region.openings = {rectangle({0.9, 2.1}, {1, 0}), rectangle({1.2, 1}, {3, 1})};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const WallAsset asset = fracture_wall(wall, 2000, {.seed = seed});
-    double inner = 0, bonds = 0;
-    for (std::uint32_t c = 0; c < asset.pattern.cell_count(); ++c)
-      for (const LoopRange loop : loops_of(asset.pattern, c))
-        for (std::uint32_t k = loop.begin; k < loop.end; ++k)
-          if (!asset.pattern.across[k].is_border())
-            inner += length(asset.pattern.vertices[asset.pattern.corners[loop.next(k)]] -
-                            asset.pattern.vertices[asset.pattern.corners[k]]);
+    const double inner = inner_length(asset.pattern);
+    double bonds = 0;
     for (const Bond& bond : asset.bonds) bonds += bond.area;
     EXPECT_NEAR(bonds, inner / 2 * wall.thickness, 1e-12 * inner) << "seed " << seed;
   }
