@@ -33,37 +33,6 @@ std::vector<Material> parse_builtin_materials() {
 
 }  // namespace
 
-template <>
-std::span<const Field<Material>> fields() {
-  using P = Material;
-  static const Field<P> table[] = {
-      {.name = "name",
-       .member = &P::name,
-       .unit = "",
-       .effect = "Letters, digits, _ and - only, at most 40.",
-       .required = true},
-      {"density",
-       &P::density,
-       "kg/m³",
-       "Mass per volume; a new material must give it.",
-       {0, 1e5, true}},
-      {"youngs_modulus", &P::youngs_modulus, "Pa", "Stiffness; 0: not known.", {0, 1e13}},
-      {"poisson_ratio", &P::poisson_ratio, "", "Sideways strain by lengthwise strain.", {-1, 0.5}},
-      {"tensile_strength",
-       &P::tensile_strength,
-       "Pa",
-       "Stress that breaks it; 0: not known.",
-       {0, 1e12}},
-      {"fracture_energy",
-       &P::fracture_energy,
-       "J/m²",
-       "Energy that a new crack takes per area, one side counted; 0: not known.",
-       {0, 1e9}},
-      {"source", &P::source, "", "Where the numbers are from."},
-  };
-  return table;
-}
-
 std::string name_at(const Place& place) {
   constexpr std::string_view kLetters =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";

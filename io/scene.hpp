@@ -8,20 +8,11 @@
 #include <vector>
 
 #include "fracture/wall.hpp"
+#include "sim/material.hpp"
+#include "sim/projectile.hpp"
+#include "sim/simulation_params.hpp"
 
 namespace sunder {
-
-/// What a wall is made of; 0 stands for "not known", except in the ratio.
-struct Material {
-  std::string name;
-  double density = 0;           ///< kg/m³
-  double youngs_modulus = 0;    ///< Pa
-  double poisson_ratio = 0.2;
-  double tensile_strength = 0;  ///< Pa
-  double fracture_energy = 0;   ///< J per m² of crack, one side counted
-  std::string source;           ///< where the numbers are from
-};
-template <> std::span<const Field<Material>> fields();
 
 /// A scene file.
 struct Scene {

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fracture/asset.hpp"
+#include "sim/pose.hpp"
+#include "sim/projectile.hpp"
+
+namespace sunder {
+
+constexpr std::uint32_t kNoTrack = 0xFFFFFFFFu;
+
+/// Poses of a moving body at consecutive times of the recording, from `first` on; after the last
+/// one it rests there. `parent` is the track whose body it came from: before `first` it moved along
+/// that one (kNoTrack: it stood in its wall).
+struct Track {
+  std::uint32_t parent = kNoTrack;
+  std::uint32_t first = 0;
+  std::vector<Pose> poses;  ///< of the wall's frame as this body carries it; of a sphere's centre
+};
+
+/// Something broke.
+struct BreakEvent {
+  double time = 0;           ///< s
+  std::uint32_t wall = 0;
+  Vec3 point;                ///< of the contact, world
+  double speed = 0;          ///< of approach, m/s
+  double utilisation = 0;    ///< demand by capacity where it was largest
+  std::uint32_t bonds_broken = 0, chunks_freed = 0;
+};
+
+/// A wall as it is after the last break: chunks that broke stand there as the parts they became,
+/// from the start, so that one set of meshes serves the whole run.
+struct RecordedWall {
+  WallAsset asset;                    ///< asset.wall has position and rotation of the standing wall
+  std::vector<std::uint32_t> track;   ///< per chunk: its last track; kNoTrack: it never moved
+};
+
+struct RecordedProjectile {
+  Projectile projectile;
+  std::uint32_t track = kNoTrack;  ///< its first pose is at projectile.time; before, it is not there
+};
+
+/// Everything that moved, step by step.
+struct Recording {
+  std::vector<double> times;  ///< of every step, s, ascending; times[0] = 0: everything stands
+  std::vector<Track> tracks;
+  std::vector<RecordedWall> walls;
+  std::vector<RecordedProjectile> projectiles;
+  std::vector<BreakEvent> events;
+};
+
+/// Range of times in which something moves along its track and the tracks before it; for kNoTrack
+/// empty.
+struct TimeRange {
+  std::uint32_t first = 0, end = 0;
+};
+TimeRange moving_range(const Recording& recording, std::uint32_t track);
+
+/// Pose of the wall's frame (of the sphere's centre) that a track gives at times[i]; `standing` is
+/// where it was before the first track.
+Pose pose_at(const Recording& recording, std::uint32_t track, std::uint32_t i,
+             const Pose& standing);
+
+}  // namespace sunder

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "meshing/field.hpp"
+
+namespace sunder {
+
+/// How long and how exactly to simulate.
+struct SimulationParams {
+  double duration = 5;             ///< s
+  double step = 1.0 / 240;         ///< s; divided further where something moves fast
+  std::int64_t iterations = 20;    ///< of the contact solver
+  double max_error = 0.01;         ///< relative error asked for: decides how far steps are divided
+  double gravity = 9.81;           ///< m/s²
+  bool ground = true;
+  double ground_height = 0;        ///< m
+  std::int64_t break_depth = 1;    ///< how often a free chunk may break again; 0: never
+  bool sleep = true;               ///< bodies at rest leave the solver
+  std::string solver = "hybrid";   ///< for buildings
+};
+template <>
+std::span<const Field<SimulationParams>> fields();
+
+}  // namespace sunder
