@@ -9,7 +9,7 @@
 
 namespace sunder {
 
-enum class Verb { fracture, check, schema };
+enum class Verb { fracture, impact, check, schema };
 
 /// The command line, as given.
 struct Options {
@@ -24,6 +24,7 @@ struct Options {
   int threads = 0;  ///< 0: as many as the machine has
   bool json = false, quiet = false, allow_outside = false;
   bool verbose = false;
+  bool no_skip = false;  ///< impact: does all the work, to prove that the outcome is the same
 };
 
 /// Parses the command line. Throws Error{usage} with "did you mean"; prints help or version and

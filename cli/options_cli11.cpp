@@ -5,18 +5,14 @@
 #include <map>
 
 #include "cli/options.hpp"
+#include "cli/outputs.hpp"
+#include "cli/usage.hpp"
 #include "cli/wall_scene.hpp"
 #include "fracture/wall.hpp"
-#include "io/export.hpp"
 #include "io/suggest.hpp"
-#include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
-
-[[noreturn]] void usage(const std::string& message) {
-  throw Error(ErrorCode::usage, message + " (see sunder --help)");
-}
 
 // CLI11 lets a list take every word up to the next option; here each word needs its own option.
 CLI::Option* one_value_each(CLI::Option* option) {
@@ -63,47 +59,6 @@ std::uint64_t parse_whole(const std::string& option, const std::string& text, st
   return std::stoull(text);
 }
 
-// The file a path leads to, whatever links and dots are on the way; it need not exist.
-std::filesystem::path canonical_of(std::filesystem::path path) {
-  namespace fs = std::filesystem;
-  constexpr int kMostLinks = 40;  // as Linux
-  std::error_code fault;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, fault); ++i) {
-    // weakly_canonical does not follow a link whose file is not there yet.
-    const fs::path target = fs::read_symlink(path, fault);
-    if (fault) break;
-    path = path.parent_path() / target;
-  }
-  const fs::path result = fs::weakly_canonical(fs::absolute(path, fault), fault);
-  return fault ? path.lexically_normal() : result;
-}
-
-void check_outputs(const Options& options) {
-  namespace fs = std::filesystem;
-  for (const fs::path& path : options.outputs)
-    if (const std::string suffix = path.extension(); suffix != ".json" && !is_export_suffix(suffix))
-      usage("-o " + path.string() +
-            ": the suffix says the format, one of .glb .gltf .obj .stl .ply "
-            ".svg .json");
-  std::vector<fs::path> all = options.outputs;
-  if (!options.report.empty()) {
-    if (options.report.extension() != ".json")
-      usage("--report " + options.report.string() + ": a report is a .json file");
-    all.push_back(options.report);
-  }
-  std::map<fs::path, fs::path> written;  // canonical → as given
-  for (const fs::path& path : all) {
-    const fs::path file = canonical_of(path);
-    const auto [other, is_new] = written.emplace(file, path);
-    if (!is_new) usage(path.string() + " is written twice, also as " + other->second.string());
-    for (const fs::path& input : options.inputs) {
-      std::error_code ignored;
-      if (file == canonical_of(input) || fs::equivalent(path, input, ignored))
-        usage(path.string() + " would overwrite the input");
-    }
-  }
-}
-
 // `--seed ""` and `--seed=` are mistakes (an unset variable), not values. CLI11 would take the next
 // word for `--seed=`.
 void check_words(int argc, char** argv) {
@@ -136,8 +91,9 @@ void check_pattern_values(const WallOptions& wall) {
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
     if (verb == &app) names.push_back(sub->get_name());
   for (const CLI::Option* option : verb->get_options())
-    if (option->count() > 1 && option->nonpositional() && option->get_items_expected_max() == 1)
-      usage(option->get_name() + " is given twice");
+    if (option->count() > 1 && option->get_items_expected_max() == 1)
+      usage(option->nonpositional() ? option->get_name() + " is given twice"
+                                    : '"' + option->results()[1] + "\" belongs to no option");
   const std::vector<std::string_view> views(names.begin(), names.end());
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
@@ -153,65 +109,119 @@ void check_pattern_values(const WallOptions& wall) {
   usage(error.what());
 }
 
-void add_common(CLI::App& app, Options& options) {
-  app.add_option("--report", options.report, "Write the numbers of the run to this JSON file");
-  app.add_flag("--json", options.json, "Print the report to standard output, and nothing else");
-  app.add_flag("-q,--quiet", options.quiet, "Print errors only");
-  app.add_flag("-v,--verbose", options.verbose, "Print times and what was not used");
-}
-
-}  // namespace
-
-std::optional<Options> parse_options(int argc, char** argv) {
-  Options options;
+// What CLI11 fills in that becomes an option only when all is read.
+struct Given {
   WallOptions wall;
   std::string seed, threads;
+};
+
+void add_report_options(CLI::App& verb, Options& options) {
+  verb.add_option("--report", options.report, "Write the numbers of the run to this JSON file");
+  verb.add_flag("--json", options.json, "Print the report to standard output, and nothing else");
+  verb.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  verb.add_flag("-v,--verbose", options.verbose, "Print times and what was not used");
+}
+
+// What the verbs that run a scene have in common.
+void add_scene_options(CLI::App& verb, Options& options, Given& given, const char* suffixes) {
+  verb.add_option("scene", options.inputs, "Scene file (JSON)")->expected(0, 1);
+  one_value_each(verb.add_option("-o,--output", options.outputs,
+                                 std::string("File to write, repeatable: ") + suffixes));
+  verb.add_option("--seed", given.seed, "Seed of the random numbers, instead of the scene's");
+  one_value_each(verb.add_option("--set", options.overrides,
+                                 "Override a value, repeatable: walls.0.pattern.jitter=0.5"));
+  verb.add_option("--threads", given.threads, "Threads; the result does not depend on them");
+  verb.add_flag("--allow-outside", options.allow_outside, "Let a scene's paths leave its folder");
+  add_report_options(verb, options);
+}
+
+void add_wall_options(CLI::App& verb, WallOptions& wall) {
+  const auto add = [&](const char* name, auto& value, const char* description) {
+    return verb.add_option(name, value, description)->group("Wall");
+  };
+  add("--wall", wall.size, "A wall without a scene file: WIDTHxHEIGHTxTHICKNESS [m]");
+  add("--pattern", wall.type,
+      "Generator: voronoi-grid, voronoi-sites, voronoi-random, voronoi-focus, quad-grid, "
+      "spiderweb");
+  one_value_each(add("--opening", wall.openings, "Opening WxH@X,Y [m], repeatable"));
+  add("--anchors", wall.anchors, "Sides held by the world: bottom,left,right,top");
+  add("--name", wall.keys["name"], "Name of the wall");
+  add("--material", wall.keys["material"], "Material");
+  add("--min-cell", wall.keys["min_cell"], "Merge cells smaller than this into a neighbour [m]");
   std::map<std::string, std::string> help;
+  add_all_pattern_options(verb, wall, help);
+}
 
-  CLI::App app("Breaks walls into closed, textured chunks with bonds, as glTF or OBJ.", "sunder");
-  app.set_version_flag("--version", "sunder " SUNDER_VERSION);
-  app.require_subcommand(0, 1);
+CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
+  CLI::App& verb = *app.add_subcommand("fracture", "Pre-fracture the walls of a scene");
+  add_scene_options(verb, options, given, ".glb .gltf .obj .stl .ply .svg .json");
+  add_wall_options(verb, given.wall);
+  return verb;
+}
 
-  CLI::App& fracture = *app.add_subcommand("fracture", "Pre-fracture the walls of a scene");
-  fracture.add_option("scene", options.inputs, "Scene file (JSON)")->expected(0, 1);
-  one_value_each(
-      fracture.add_option("-o,--output", options.outputs,
-                          "File to write, repeatable: .glb .gltf .obj .stl .ply .svg .json"));
-  fracture.add_option("--seed", seed, "Seed of the random numbers, instead of the scene's");
-  one_value_each(fracture.add_option("--set", options.overrides,
-                                     "Override a value, repeatable: walls.0.pattern.jitter=0.5"));
-  fracture.add_option("--threads", threads, "Threads; the result does not depend on them");
-  fracture.add_flag("--allow-outside", options.allow_outside,
-                    "Let a scene's paths leave its folder");
-  add_common(fracture, options);
-  fracture
-      .add_option("--wall", wall.size, "A wall without a scene file: WIDTHxHEIGHTxTHICKNESS [m]")
-      ->group("Wall");
-  fracture
-      .add_option("--pattern", wall.type,
-                  "Generator: voronoi-grid, voronoi-sites, "
-                  "voronoi-random, voronoi-focus, quad-grid, spiderweb")
-      ->group("Wall");
-  one_value_each(fracture.add_option("--opening", wall.openings, "Opening WxH@X,Y [m], repeatable"))
-      ->group("Wall");
-  fracture.add_option("--anchors", wall.anchors, "Sides held by the world: bottom,left,right,top")
-      ->group("Wall");
-  fracture.add_option("--name", wall.keys["name"], "Name of the wall")->group("Wall");
-  fracture.add_option("--material", wall.keys["material"], "Material")->group("Wall");
-  fracture
-      .add_option("--min-cell", wall.keys["min_cell"],
-                  "Merge cells smaller than this into a neighbour [m]")
-      ->group("Wall");
-  add_all_pattern_options(fracture, wall, help);
+CLI::App& add_impact(CLI::App& app, Options& options, Given& given) {
+  CLI::App& verb =
+      *app.add_subcommand("impact", "Simulate what a scene's projectiles do to its walls");
+  add_scene_options(verb, options, given, ".glb .gltf .svg .json");
+  verb.add_flag("--no-skip", options.no_skip,
+                "Do the work that the scene does not need too; the result is the same");
+  return verb;
+}
 
-  CLI::App& check = *app.add_subcommand("check", "Measure assets; exit 1 if one is not sound");
-  check.add_option("files", options.inputs, ".glb .gltf .obj .stl .ply")->required();
-  add_common(check, options);
+CLI::App& add_check(CLI::App& app, Options& options) {
+  CLI::App& verb = *app.add_subcommand("check", "Measure assets; exit 1 if one is not sound");
+  verb.add_option("files", options.inputs, ".glb .gltf .obj .stl .ply")->required();
+  add_report_options(verb, options);
+  return verb;
+}
 
-  CLI::App& schema = *app.add_subcommand("schema", "Print a JSON schema, for editors");
-  schema.add_option("which", options.schema,
-                    "scene, material or report; parameters: the parameter tables as Markdown");
+CLI::App& add_schema(CLI::App& app, Options& options) {
+  CLI::App& verb = *app.add_subcommand("schema", "Print a JSON schema, for editors");
+  verb.add_option("which", options.schema,
+                  "scene, material, report (of fracture and check) or impact-report; parameters: "
+                  "the parameter tables as Markdown");
+  return verb;
+}
 
+void check_something_to_write(const Options& options, const std::string& verb) {
+  if (options.outputs.empty() && options.report.empty() && !options.json)
+    usage(verb + " has nothing to write: give -o FILE, --report FILE or --json");
+}
+
+void finish_fracture(const CLI::App& verb, Options& options, const WallOptions& wall) {
+  check_pattern_values(wall);
+  if (wall.size.empty() == options.inputs.empty())
+    usage(wall.size.empty() ? "fracture needs a scene file or --wall"
+                            : "fracture takes a scene file or --wall, not both; \"" +
+                                  options.inputs.front().string() + "\" belongs to no option");
+  if (!wall.size.empty()) options.wall_scene = scene_text(wall);
+  if (wall.size.empty())
+    for (const CLI::Option* option : verb.get_options())
+      if (option->count() > 0 &&
+          (option->get_group() == "Wall" || option->get_group() == "Pattern"))
+        usage(option->get_name() + " goes with --wall; for a scene file use --set");
+  check_something_to_write(options, "fracture");
+}
+
+void finish_impact(const Options& options) {
+  if (options.inputs.empty()) usage("impact needs a scene file");
+  check_something_to_write(options, "impact");
+}
+
+void finish_check(const Options& options) {
+  if (options.inputs.size() < 2) return;
+  if (options.json) usage("--json prints one report, so check takes one file with it");
+  if (!options.report.empty()) usage("--report writes one report, so check takes one file with it");
+}
+
+void read_numbers(Options& options, const Given& given) {
+  if (!given.seed.empty()) options.seed = parse_whole("--seed", given.seed, ~std::uint64_t{0});
+  if (!given.threads.empty())
+    options.threads = static_cast<int>(parse_whole("--threads", given.threads, 1024));
+}
+
+// False when help or the version was asked for and is printed.
+bool parse(CLI::App& app, int argc, char** argv) {
   if (argc <= 1) {
     std::fputs(app.help().c_str(), stderr);
     usage("a verb is needed");
@@ -219,42 +229,45 @@ std::optional<Options> parse_options(int argc, char** argv) {
   check_words(argc, argv);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& call) {
+  } catch (const CLI::Success& call) {
     app.exit(call);
-    return {};
-  } catch (const CLI::CallForVersion& call) {
-    app.exit(call);
-    return {};
+    return false;
   } catch (const CLI::ParseError& error) {
     explain(app, error, argc, argv);
   }
+  if (app.get_subcommands().empty()) usage("a verb is needed");
+  return true;
+}
 
-  options.verb = check.parsed() ? Verb::check : schema.parsed() ? Verb::schema : Verb::fracture;
-  for (const CLI::App* verb : app.get_subcommands()) check_values(*verb);
-  check_pattern_values(wall);
-  if (!seed.empty()) options.seed = parse_whole("--seed", seed, ~std::uint64_t{0});
-  if (!threads.empty()) options.threads = static_cast<int>(parse_whole("--threads", threads, 1024));
-  if (check.parsed() && options.json && options.inputs.size() > 1)
-    usage("--json prints one report, so check takes one file with it");
-  if (check.parsed() && !options.report.empty() && options.inputs.size() > 1)
-    usage("--report writes one report, so check takes one file with it");
-  if (options.verb != Verb::fracture) {
-    check_outputs(options);
-    return options;
+}  // namespace
+
+std::optional<Options> parse_options(int argc, char** argv) {
+  Options options;
+  Given given;
+  CLI::App app(
+      "Breaks walls into closed, textured chunks with bonds, as glTF or OBJ, and simulates what "
+      "hits them.",
+      "sunder");
+  app.set_version_flag("--version", "sunder " SUNDER_VERSION);
+  app.require_subcommand(0, 1);
+  const std::pair<CLI::App*, Verb> verbs[] = {
+      {&add_fracture(app, options, given), Verb::fracture},
+      {&add_impact(app, options, given), Verb::impact},
+      {&add_check(app, options), Verb::check},
+      {&add_schema(app, options), Verb::schema},
+  };
+  if (!parse(app, argc, argv)) return {};
+
+  const CLI::App* const verb = app.get_subcommands().front();
+  check_values(*verb);
+  read_numbers(options, given);
+  options.verb = std::ranges::find(verbs, verb, &std::pair<CLI::App*, Verb>::first)->second;
+  switch (options.verb) {
+    case Verb::fracture: finish_fracture(*verb, options, given.wall); break;
+    case Verb::impact: finish_impact(options); break;
+    case Verb::check: finish_check(options); break;
+    case Verb::schema: break;
   }
-
-  if (wall.size.empty() == options.inputs.empty())
-    usage(wall.size.empty() ? "fracture needs a scene file or --wall"
-                            : "fracture takes a scene file or --wall, not both; \"" +
-                                  options.inputs.front().string() + "\" belongs to no option");
-  if (!wall.size.empty()) options.wall_scene = scene_text(wall);
-  if (wall.size.empty())
-    for (const CLI::Option* option : fracture.get_options())
-      if (option->count() > 0 &&
-          (option->get_group() == "Wall" || option->get_group() == "Pattern"))
-        usage(option->get_name() + " goes with --wall; for a scene file use --set");
-  if (options.outputs.empty() && options.report.empty() && !options.json)
-    usage("fracture has nothing to write: give -o FILE, --report FILE or --json");
   check_outputs(options);
   return options;
 }

@@ -15,20 +15,6 @@
 namespace sunder {
 namespace {
 
-SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall) {
-  SoupWall soup;
-  soup.chunk_count = static_cast<std::uint32_t>(wall.chunks.size());
-  soup.has_chunks = asset.has_chunks;
-  soup.bonds = wall.bonds;
-  soup.volume_expected = wall.volume_expected;
-  soup.chunk = [&wall, &asset](std::uint32_t c) {
-    const ImportedChunk& chunk = wall.chunks[c];
-    return SoupChunk{chunk.positions, chunk.triangles,
-                     asset.has_materials ? chunk.inner : std::vector<std::uint8_t>{}};
-  };
-  return soup;
-}
-
 // Counts and volume, one line.
 std::string details_of(const ImportedAsset& asset, const Soundness& s) {
   const auto count = [](std::uint64_t value) { return std::to_string(value); };

@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include "cli/print_soundness.hpp"
 #include "cli/progress.hpp"
+#include "cli/read_scene.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
-#include "cli/wall_scene.hpp"
 #include "fracture/measure.hpp"
 #include "io/export.hpp"
 #include "io/output.hpp"
@@ -19,20 +18,8 @@
 namespace sunder {
 namespace {
 
-Scene parse(const Options& options) {
-  const SceneParams params{options.overrides, options.allow_outside};
-  const bool is_file = options.wall_scene.empty();
-  try {
-    return is_file ? read_scene(options.inputs.front(), params)
-                   : parse_scene(options.wall_scene, kCommandLine, params);
-  } catch (const Error& error) {
-    throw named_by_option(error, is_file ? options.inputs.front().string() : kCommandLine);
-  }
-}
-
 Scene read(const Options& options) {
-  Scene scene = parse(options);
-  if (options.seed) scene.seed = *options.seed;
+  Scene scene = read_scene(options);
   if (scene.walls.empty())
     throw Error(ErrorCode::input, "the scene has no walls, so there is nothing to fracture");
   for (const Wall& wall : scene.walls)
@@ -40,11 +27,6 @@ Scene read(const Options& options) {
       throw Error(ErrorCode::input, "wall " + wall.name + " is an asset (" + wall.asset +
                                         ") and fractured already; leave it out or give an outline");
   return scene;
-}
-
-int thread_count(const Options& options) {
-  if (options.threads > 0) return options.threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 Asset fracture(const Scene& scene, const Options& options, int threads) {
@@ -109,7 +91,7 @@ void print_summary(const Asset& asset, const Scene& scene, const Options& option
                    static_cast<unsigned long long>(wall.stats.sites_repeated));
   for (const auto& path : options.outputs) std::fprintf(stderr, "wrote %s\n", path.c_str());
   if (!options.verbose) return;
-  for (const std::string& key : scene.not_used)
+  for (const std::string& key : given_keys(scene, {"projectiles", "building", "simulation"}))
     std::fprintf(stderr, "\"%s\" is not used by fracture\n", key.c_str());
   for (const auto& [step, seconds] : watch.steps())
     std::fprintf(stderr, "%-8s %8.3f ms\n", step.c_str(), 1e3 * seconds);

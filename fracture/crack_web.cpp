@@ -605,8 +605,10 @@ CrackWeb plan_cracks(const LatticeRegion& region, const SpiderwebParams& params,
   stats.polygons = static_cast<std::uint32_t>(web.hulls.size());
   WebBuilder builder(region, params, spacing, seed, web);
   builder.add_hulls();
+  web.inner_begin = web.cracks.size();
   for (std::size_t k = 0; k < web.zones.size(); ++k) builder.add_zone(k, polygons[k], diagonals[k]);
   builder.add_seams();
+  web.radial_begin = web.cracks.size();
   for (std::size_t k = 0; k < web.zones.size(); ++k) builder.add_radial_cracks(k);
   return web;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,8 +24,10 @@ struct CrackWeb {
     std::uint32_t group = 0;
   };
   /// All cracks. They meet at shared end points, or one runs a little past the other, so that the
-  /// triangulation finds their crossing; they may leave the region.
+  /// triangulation finds their crossing; they may leave the region. First the edges of the hulls,
+  /// then what is inside them, then the radial cracks, each segment by segment from a hull outward.
   std::vector<Segment> cracks;
+  std::size_t inner_begin = 0, radial_begin = 0;
   /// Those of them that border on the rest of the wall: the groups' hulls and the radial cracks.
   std::vector<Segment> outer_cracks;
   std::vector<Zone> zones;

@@ -54,15 +54,20 @@ class Gatherer {
     }
   }
 
-  Pattern run() {
+  Pattern run(std::vector<std::uint8_t>* is_damaged) {
     join_compact_pairs();
     join_small_cells(
         [&](const Cell& c) { return !c.is_damaged && c.area < kSmallest * params_.cell_area; },
         false);
     join_small_cells([&](const Cell& c) { return 2 * c.area <= params_.least_width * c.perimeter; },
                      true);
+    join_small_cells(
+        [&](const Cell& c) {
+          return !c.is_damaged && 2 * c.area <= params_.least_rest_width * c.perimeter;
+        },
+        true);
     contract_short_edges();
-    return make_pattern();
+    return make_pattern(is_damaged);
   }
 
  private:
@@ -286,7 +291,7 @@ class Gatherer {
     return kept;
   }
 
-  Pattern make_pattern() {
+  Pattern make_pattern(std::vector<std::uint8_t>* is_damaged) {
     Pattern pattern;
     std::vector<std::uint32_t> cell_of(cells_.size(), kNone),
         vertex_of(field_.vertices.size(), kNone);
@@ -298,6 +303,7 @@ class Gatherer {
     std::vector<std::uint32_t> roots(count);
     for (std::uint32_t t = 0; t < cells_.size(); ++t) roots[cell_of[t]] = find(t);
     for (const std::uint32_t root : roots) {
+      if (is_damaged) is_damaged->push_back(cells_[root].is_damaged);
       for (const std::uint32_t edge : loop_of(root)) {
         const std::uint32_t v = representative_[start_of(edge)];
         if (vertex_of[v] == kNone) {
@@ -328,8 +334,33 @@ class Gatherer {
 
 }  // namespace
 
-Pattern gather(const CrackedTriangles& triangles, const GatherParams& params) {
-  return Gatherer(triangles, params).run();
+std::vector<std::vector<std::uint32_t>> parts_between_cracks(const CrackedTriangles& field) {
+  const auto count = static_cast<std::uint32_t>(field.triangles.size());
+  const auto twice_area = [&](std::uint32_t t) {
+    const auto& [a, b, c] = field.triangles[t];
+    return cross(field.vertices[b] - field.vertices[a], field.vertices[c] - field.vertices[a]);
+  };
+  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<bool> seen(count);
+  for (std::uint32_t start = 0; start < count; ++start) {
+    if (seen[start]) continue;
+    std::vector<std::uint32_t>& part = parts.emplace_back(1, start);
+    seen[start] = true;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Across across = field.across[part[i]][k];
+        if (across.is_border() || field.is_crack[part[i]][k] || seen[across.cell()]) continue;
+        seen[across.cell()] = true;
+        part.push_back(across.cell());
+      }
+    std::iter_swap(part.begin(), std::ranges::max_element(part, {}, twice_area));
+  }
+  return parts;
+}
+
+Pattern gather(const CrackedTriangles& triangles, const GatherParams& params,
+               std::vector<std::uint8_t>* is_damaged) {
+  return Gatherer(triangles, params).run(is_damaged);
 }
 
 }  // namespace sunder

@@ -108,7 +108,12 @@ class WebTriangulation {
     CrackedTriangles result;
     for (const Vertex v : vertices_) result.vertices.push_back(place(v));
     collect_triangles(result);
-    mark_damage(web, result);
+    result.is_damaged.assign(result.triangles.size(), false);
+    for (const auto& part : parts_between_cracks(result)) {
+      const auto& [a, b, c] = result.triangles[part.front()];
+      if (is_damaged(web, (1.0 / 3) * (position(a) + position(b) + position(c))))
+        for (const std::uint32_t t : part) result.is_damaged[t] = true;
+    }
     return result;
   }
 
@@ -201,36 +206,6 @@ class WebTriangulation {
             other == kNone ? Across::border(along_.at({from, to}).front()) : Across::cell(other);
         is_crack[k] = other != kNone && f->is_constrained(opposite);
       }
-    }
-  }
-
-  // Everything up to the next crack is damaged or not as a whole: its largest triangle decides, far
-  // from the rounding of the cracks.
-  void mark_damage(const CrackWeb& web, CrackedTriangles& result) const {
-    const auto count = static_cast<std::uint32_t>(result.triangles.size());
-    const auto twice_area = [&](std::uint32_t t) {
-      const auto& [a, b, c] = result.triangles[t];
-      return cross(result.vertices[b] - result.vertices[a],
-                   result.vertices[c] - result.vertices[a]);
-    };
-    result.is_damaged.assign(count, false);
-    std::vector<bool> seen(count);
-    for (std::uint32_t start = 0; start < count; ++start) {
-      if (seen[start]) continue;
-      std::vector<std::uint32_t> part{start};
-      seen[start] = true;
-      for (std::size_t i = 0; i < part.size(); ++i)
-        for (int k = 0; k < 3; ++k) {
-          const Across across = result.across[part[i]][k];
-          if (across.is_border() || result.is_crack[part[i]][k] || seen[across.cell()]) continue;
-          seen[across.cell()] = true;
-          part.push_back(across.cell());
-        }
-      const std::uint32_t largest = *std::ranges::max_element(part, {}, twice_area);
-      const auto& [a, b, c] = result.triangles[largest];
-      const Vec2 centre = (1.0 / 3) * (position(a) + position(b) + position(c));
-      if (is_damaged(web, centre))
-        for (const std::uint32_t t : part) result.is_damaged[t] = true;
     }
   }
 

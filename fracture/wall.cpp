@@ -155,12 +155,10 @@ template <>
 std::span<const Field<SpiderwebParams>> fields() {
   using P = SpiderwebParams;
   static const Field<P> table[] = {
-      {.name = "impacts",
-       .member = &P::impacts,
-       .unit = "m",
-       .effect = "Impact points inside the wall, each the centre of a damage polygon.",
-       .range = kCoordinate,
-       .required = true},
+      {"impacts", &P::impacts, "m",
+       "Impact points inside the wall, each the centre of a damage polygon; `sunder impact` adds "
+       "those of its hits.",
+       kCoordinate},
       {"min_points", &P::min_points, "", "Fewest corners of a damage polygon.", {3, 1000}},
       {"max_points",
        &P::max_points,

@@ -6,14 +6,17 @@
 
 #include "io/text_writer.hpp"
 #include "io/wall_view.hpp"
+#include "sim/recording.hpp"
 
 namespace sunder {
 
 /// Writes glTF 2.0 as docs/formats.md describes it. The walls are valid (see validate). Bytes
 /// depend on the walls' content only. Throws Error{output}: a GLB cannot hold more than 4 GiB.
-void write_glb(std::span<const WallView> walls, ByteSink& out);
+/// `recording`, of the same walls and valid: its projectiles and motion are written too.
+void write_glb(std::span<const WallView> walls, ByteSink& out,
+               const Recording* recording = nullptr);
 /// The same as JSON with its binary beside it; `binary_name` is that file's name without folder.
 void write_gltf(std::span<const WallView> walls, const std::string& binary_name, ByteSink& json,
-                ByteSink& binary);
+                ByteSink& binary, const Recording* recording = nullptr);
 
 }  // namespace sunder

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "meshing/tri_mesh.hpp"
+#include "fracture/measure.hpp"
 
 namespace sunder {
 
@@ -21,8 +21,9 @@ struct ImportedChunk {
 /// A wall's chunks and what its extras say; a format without extras leaves NaN.
 struct ImportedWall {
   std::string name;
+  std::string material;                ///< "" if the format has none
   std::vector<ImportedChunk> chunks;
-  double volume_expected;  ///< m³, NaN: the file does not say
+  double volume_expected = 0;          ///< m³, NaN: the file does not say
   std::uint64_t bonds = 0;
 };
 
@@ -38,6 +39,9 @@ struct ImportLimits {
   double seconds = 60;                            ///< processor time of the reader
   std::uint64_t file_size = std::uint64_t{2} << 30;
 };
+
+/// A wall of it as a soup; both must outlive it.
+SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall);
 
 /// Reads a .glb, .gltf, .obj, .stl or .ply that `sunder fracture` wrote. assimp's readers crash on
 /// hostile files, so they run in a child process with limits; files outside the asset's folder are

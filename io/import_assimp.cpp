@@ -211,20 +211,19 @@ class Flattener {
   }
 
  private:
-  bool is_inner(const aiMesh& mesh) const {
-    if (mesh.mMaterialIndex >= scene_.mNumMaterials) return false;
-    const aiString name = scene_.mMaterials[mesh.mMaterialIndex]->GetName();
-    return std::string_view(name.C_Str()).ends_with("_inner");
+  std::string material_of(const aiMesh& mesh) const {
+    if (mesh.mMaterialIndex >= scene_.mNumMaterials) return "";
+    return scene_.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
   }
 
   std::size_t wall_named(const std::string& name) {
     const auto [found, added] = by_name_.emplace(name, asset_.walls.size());
-    if (added) asset_.walls.push_back({name, {}, std::numeric_limits<double>::quiet_NaN(), 0});
+    if (added) asset_.walls.push_back({name, "", {}, std::numeric_limits<double>::quiet_NaN(), 0});
     return found->second;
   }
 
   std::size_t wall_marked(const aiNode& node, const aiMetadata* extras) {
-    ImportedWall wall{node.mName.C_Str(), {}, std::numeric_limits<double>::quiet_NaN(), 0};
+    ImportedWall wall{node.mName.C_Str(), "", {}, std::numeric_limits<double>::quiet_NaN(), 0};
     wall.volume_expected = number(extras, "volume_expected").value_or(wall.volume_expected);
     const double bonds = number(group(extras, "bonds"), "count").value_or(0);
     wall.bonds = bonds >= 0 && bonds < 1e15 ? static_cast<std::uint64_t>(bonds) : 0;
@@ -241,14 +240,21 @@ class Flattener {
   void visit(const aiNode& node, std::optional<std::size_t> wall) {
     const aiMetadata* extras = group(node.mMetaData, "sunder");
     if (number(extras, "sunder")) wall = wall_marked(node, extras);
+    if (number(extras, "radius")) return;  // a projectile of a recording
     if (node.mNumMeshes > 0) {
       ImportedChunk chunk{node.mName.C_Str(), {}, {}, {}};
+      std::string material;
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         if (node.mMeshes[i] >= scene_.mNumMeshes) refuse("a node names a mesh that does not exist");
         const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
-        append(mesh, is_inner(mesh), chunk);
+        material = material_of(mesh);
+        append(mesh, material.ends_with("_inner"), chunk);
       }
       const std::size_t home = wall ? *wall : wall_named(wall_of(chunk.name));
+      // Both materials of a wall are named after one.
+      for (const std::string_view end : {"_outer", "_inner"})
+        if (material.ends_with(end) && asset_.walls[home].material.empty())
+          asset_.walls[home].material = material.substr(0, material.size() - end.size());
       asset_.walls[home].chunks.push_back(std::move(chunk));
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], wall);
@@ -278,6 +284,20 @@ ImportedAsset read_with_assimp(const std::filesystem::path& path, const std::str
 }
 
 }  // namespace
+
+SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall) {
+  SoupWall soup;
+  soup.chunk_count = static_cast<std::uint32_t>(wall.chunks.size());
+  soup.has_chunks = asset.has_chunks;
+  soup.bonds = wall.bonds;
+  soup.volume_expected = wall.volume_expected;
+  soup.chunk = [&wall, &asset](std::uint32_t c) {
+    const ImportedChunk& chunk = wall.chunks[c];
+    return SoupChunk{chunk.positions, chunk.triangles,
+                     asset.has_materials ? chunk.inner : std::vector<std::uint8_t>{}};
+  };
+  return soup;
+}
 
 ImportedAsset import_asset(const std::filesystem::path& path, ImportLimits limits) {
   const std::string suffix = suffix_of(path);

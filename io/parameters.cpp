@@ -93,16 +93,30 @@ std::string pattern_tables() {
 std::string materials_table() {
   std::string text =
       "| name | density kg/m³ | Young's modulus Pa | Poisson's ratio | tensile strength Pa | "
-      "fracture energy J/m² | source |\n|---|---|---|---|---|---|---|\n";
+      "compressive strength Pa | fracture energy J/m² | stored energy J/m³ | friction | "
+      "restitution | source |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Material& material : builtin_materials()) {
     text += "| " + code(material.name);
-    for (const double value : {material.density, material.youngs_modulus, material.poisson_ratio,
-                               material.tensile_strength, material.fracture_energy}) {
+    for (const double value :
+         {material.density, material.youngs_modulus, material.poisson_ratio,
+          material.tensile_strength, material.compressive_strength, material.fracture_energy,
+          material.stored_energy, material.friction, material.restitution}) {
       text += " | " + number_text(value);
     }
     text += " | " + cell(material.source) + " |\n";
   }
   return text;
+}
+
+/// What happens to the walls.
+std::string run_tables() {
+  std::vector<DocRow> rows;
+  append_rows(rows, field_rows<Projectile>());
+  append_rows(rows, kProjectileKeys);
+  std::string text = "## Projectile\n\nA solid sphere.\n\n" + table(rows) + "## Simulation\n\n";
+  rows.clear();
+  append_rows(rows, field_rows<SimulationParams>());
+  return text + table(rows);
 }
 
 }  // namespace
@@ -120,11 +134,12 @@ std::string parameters_markdown() {
   rows.clear();
   append_rows(rows, field_rows<Wall>());
   append_rows(rows, kWallKeys);
-  text += table(rows) + "## Shape\n\nOf outlines and openings.\n\n";
+  text +=
+      table(rows) + std::string(kAssetMaterial) + "\n\n## Shape\n\nOf outlines and openings.\n\n";
   rows.clear();
   append_rows(rows, kShapeKeys);
   text += table(rows) + "## Pattern\n\nThe key `type` is required and chooses the others.\n\n";
-  text += pattern_tables() + "## Material\n\n";
+  text += pattern_tables() + run_tables() + "## Material\n\n";
   rows.clear();
   append_rows(rows, field_rows<Material>());
   return text + table(rows) + "## Built-in materials\n\n" + materials_table();

@@ -88,6 +88,7 @@ void send_asset(const ImportedAsset& asset, PipeWriter& out) {
   out.value(static_cast<std::uint64_t>(asset.walls.size()));
   for (const ImportedWall& wall : asset.walls) {
     out.text(wall.name);
+    out.text(wall.material);
     out.value(wall.volume_expected);
     out.value(wall.bonds);
     out.value(static_cast<std::uint64_t>(wall.chunks.size()));
@@ -227,7 +228,11 @@ ImportedAsset receive_asset(PipeReader& in) {
   asset.has_materials = in.value<std::uint8_t>() != 0;
   const std::uint64_t walls = in.count(4);
   for (std::uint64_t w = 0; w < walls; ++w) {
-    ImportedWall wall{in.text(), {}, in.value<double>(), in.value<std::uint64_t>()};
+    ImportedWall wall;
+    wall.name = in.text();
+    wall.material = in.text();
+    wall.volume_expected = in.value<double>();
+    wall.bonds = in.value<std::uint64_t>();
     const std::uint64_t chunks = in.count(4);
     for (std::uint64_t c = 0; c < chunks; ++c) wall.chunks.push_back(receive_chunk(in));
     asset.walls.push_back(std::move(wall));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,18 +19,26 @@ namespace sunder {
 struct Scene {
   std::uint64_t seed = 1;
   std::vector<Wall> walls;
-  std::vector<Material> materials;     ///< built in, then the scene's own
-  std::vector<std::string> not_used;   ///< top-level keys this verb has no use for ("building" …)
+  std::vector<Material> materials;  ///< built in, then the scene's own
+  std::vector<Projectile> projectiles;
+  SimulationParams simulation;
+  std::vector<std::string> keys;  ///< top-level keys that the file gives, in its order
 };
+
+/// Those of `keys` that the scene's file gives: what a verb has no use for, and says so.
+std::vector<std::string> given_keys(const Scene& scene,
+                                    std::initializer_list<std::string_view> keys);
 
 struct SceneParams {
-  std::vector<std::string> overrides = {};  ///< "a.b=value" as --set gives them, applied before checking
-  bool allow_outside = false;          ///< asset paths may leave the scene's folder
+  /// "a.b=value" as --set gives them, applied before checking.
+  std::vector<std::string> overrides = {};
+  bool allow_outside = false;  ///< asset paths may leave the scene's folder
 };
 
-/// Reads and checks a scene. Throws Error{input}:
-/// `file:line: /json/pointer: what, value, what would be valid`, one message per error, the first
-/// one found. Never crashes, never allocates more than a small multiple of the file.
+/// Reads and checks a scene. A wall that is an asset and gives no material has an empty one: that
+/// of its file. Throws Error{input}: `file:line: /json/pointer: what, value, what would be valid`,
+/// one message per error, the first one found. Never crashes, never allocates more than a small
+/// multiple of the file.
 Scene read_scene(const std::filesystem::path& path, const SceneParams& params = {});
 /// The same from text; `name` stands for the file in messages.
 Scene parse_scene(std::string_view text, const std::string& name, const SceneParams& params = {});
@@ -39,7 +48,8 @@ const std::vector<Material>& builtin_materials();
 /// The material of that name; throws Error{input} with "did you mean".
 const Material& find_material(const std::vector<Material>& materials, const std::string& name);
 
-/// JSON Schema (draft-07) of "scene", "material" or "report". Throws Error{usage} for another.
+/// JSON Schema (draft-07) of "scene", "material", "report" (of fracture and check) or
+/// "impact-report". Throws Error{usage} for another.
 std::string json_schema(std::string_view which);
 /// docs/parameters.md, from the same tables.
 std::string parameters_markdown();

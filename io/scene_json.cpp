@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <unordered_set>
 
 #include "io/materials.hpp"
 #include "io/overrides.hpp"
 #include "io/printable.hpp"
+#include "io/projectiles.hpp"
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
 #include "io/strict_json.hpp"
@@ -121,7 +123,7 @@ struct WallContext {
   bool allow_outside;
 };
 
-/// An asset brings its own outline, openings and pattern.
+/// An asset brings its own outline, openings and pattern, and a material unless one is given.
 void read_asset(Wall& wall, const Place& place, const WallContext& context) {
   const JsonValue* asset = place.value.find("asset");
   if (!asset) return;
@@ -132,6 +134,7 @@ void read_asset(Wall& wall, const Place& place, const WallContext& context) {
                 "\" does not go with \"asset\", whose file has its own; leave one out");
     }
   }
+  if (!place.value.find("material")) wall.material.clear();
   wall.asset = resolve_asset(Place(place, "asset", *asset), context.folder, context.allow_outside);
 }
 
@@ -196,18 +199,33 @@ void check_version(const Place& scene) {
   }
 }
 
-/// Keys for other verbs: only that they are what they must be.
-void read_not_used(Scene& scene, const Place& place) {
-  for (const std::string_view key : {"projectiles", "building", "simulation"}) {
-    const JsonValue* value = place.value.find(key);
-    if (!value) continue;
-    const Place member(place, key, *value);
-    if (key == "projectiles") {
-      for (std::size_t i = 0; i < list_at(member).size(); ++i) object_at(Place(member, i));
-    } else {
-      object_at(member);
-    }
-    scene.not_used.emplace_back(key);
+SimulationParams read_simulation(const Place& place) {
+  constexpr double kMostSteps = 1e7;
+  check_keys(place, keys_of<SimulationParams>());
+  SimulationParams params;
+  read_fields(params, place);
+  const double steps = std::floor(params.duration / params.step);
+  if (steps > kMostSteps) {
+    const JsonValue* step = place.value.find("step");
+    (step ? Place(place, "step", *step) : place)
+        .fail("step = " + number_text(params.step) +
+              " s cuts duration = " + number_text(params.duration) + " s into " +
+              number_text(steps) + " steps, the most is " + number_text(kMostSteps) +
+              "; take a step of at least " + number_text(params.duration / kMostSteps) + " s");
+  }
+  return params;
+}
+
+/// What verbs other than fracture read.
+void read_run(Scene& scene, const Place& place) {
+  if (const JsonValue* projectiles = place.value.find("projectiles")) {
+    scene.projectiles = read_projectiles(Place(place, "projectiles", *projectiles), scene.walls);
+  }
+  if (const JsonValue* simulation = place.value.find("simulation")) {
+    scene.simulation = read_simulation(Place(place, "simulation", *simulation));
+  }
+  if (const JsonValue* building = place.value.find("building")) {
+    object_at(Place(place, "building", *building));
   }
 }
 
@@ -227,7 +245,7 @@ Scene read_tree(const Place& place, const fs::path& folder, bool allow_outside) 
   if (const JsonValue* materials = place.value.find("materials")) {
     read_materials(Place(place, "materials", *materials), scene.materials);
   }
-  read_not_used(scene, place);
+  for (const JsonMember& member : object_at(place)) scene.keys.push_back(member.key);
   const JsonValue* walls = place.value.find("walls");
   const WallContext context{scene.materials, folder, allow_outside};
   if (walls) read_walls(scene, Place(place, "walls", *walls), context);
@@ -236,6 +254,7 @@ Scene read_tree(const Place& place, const fs::path& folder, bool allow_outside) 
     if (walls) Place(place, "walls", *walls).fail("no wall and no building, " + example);
     place.fail("the key \"walls\" is missing, " + example);
   }
+  read_run(scene, place);
   return scene;
 }
 
@@ -251,6 +270,17 @@ Scene parse_scene(std::string_view text, const std::string& name, const ScenePar
 
 Scene read_scene(const std::filesystem::path& path, const SceneParams& params) {
   return parse_scene(read_text_file(path), path.string(), params);
+}
+
+std::vector<std::string> given_keys(const Scene& scene,
+                                    std::initializer_list<std::string_view> keys) {
+  std::vector<std::string> given;
+  for (const std::string_view key : keys) {
+    if (std::find(scene.keys.begin(), scene.keys.end(), key) != scene.keys.end()) {
+      given.emplace_back(key);
+    }
+  }
+  return given;
 }
 
 }  // namespace sunder

@@ -26,6 +26,7 @@ constexpr Range kSceneVersion{1, 1};
 constexpr Range kShapeSize{1e-6, 1e6};   // m
 constexpr Range kShapePlace{-1e6, 1e6};  // m
 constexpr Range kTurn{-360, 360};        // degrees
+constexpr Range kVelocity{-1e5, 1e5};    // m/s
 
 inline constexpr SceneKey kSceneKeys[] = {
     {"$schema", "text", "", "", "Where an editor finds the JSON schema; not read."},
@@ -36,10 +37,12 @@ inline constexpr SceneKey kSceneKeys[] = {
     {"materials", "list of materials", "[]", "",
      "Materials of the scene's own. One with the name of a built-in material replaces the values "
      "it gives."},
-    {"projectiles", "list", "[]", "", "What hits the walls; `sunder fracture` does not use it."},
-    {"building", "object", "none", "", "A frame building; `sunder fracture` does not use it."},
-    {"simulation", "object", "none", "",
-     "How long and how exactly to simulate; `sunder fracture` does not use it."},
+    {"projectiles", "list of projectiles", "[]", "",
+     "What hits the walls, see below; `sunder fracture` does not use it."},
+    {"building", "object", "none", "",
+     "A frame building; `sunder fracture` and `sunder impact` do not use it."},
+    {"simulation", "simulation", "{}", "",
+     "How long and how exactly to simulate, see below; `sunder fracture` does not use it."},
 };
 
 inline constexpr SceneKey kWallKeys[] = {
@@ -51,6 +54,17 @@ inline constexpr SceneKey kWallKeys[] = {
      kShapePlace},
     {"rotation_deg", "[x, y, z]", "[0, 0, 0]", "degrees",
      "Turns about the world's x, then y, then z axis through the wall's origin.", kTurn},
+};
+
+/// Of the field `material`, whose default is not that of a wall with an asset.
+inline constexpr std::string_view kAssetMaterial =
+    "A wall with \"asset\" and without \"material\" keeps the material of its file.";
+
+inline constexpr SceneKey kProjectileKeys[] = {
+    {"position", "[x, y, z]", "required", "m",
+     "Its centre at `time`; neither in a wall nor below the ground.", kShapePlace},
+    {"velocity", "[x, y, z]", "required", "m/s", "At `time`; at most 100000 m/s in all.",
+     kVelocity},
 };
 
 inline constexpr SceneKey kShapeKeys[] = {

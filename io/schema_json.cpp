@@ -5,6 +5,7 @@
 
 #include "io/field_row.hpp"
 #include "io/printable.hpp"
+#include "io/report_schema.hpp"
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
 #include "io/suggest.hpp"
@@ -100,6 +101,8 @@ Json field_schema(const FieldRow& row) {
     schema["default"] = *integer;
   } else if (const auto* text = std::get_if<std::string>(&row.default_value)) {
     if (row.has_default()) schema["default"] = *text;
+  } else if (const auto* truth = std::get_if<bool>(&row.default_value)) {
+    schema["default"] = *truth;
   }
   schema["description"] = description_of(row.effect, row.unit);
   return schema;
@@ -154,7 +157,21 @@ Json wall_schema() {
     add_key(schema["properties"], kWallKeys[i], schemas[i]);
   }
   schema["if"] = {{"required", {"asset"}}};
-  schema["then"] = {{"properties", {{"outline", false}, {"openings", false}, {"pattern", false}}}};
+  schema["then"] = {{"properties",
+                     {{"outline", false},
+                      {"openings", false},
+                      {"pattern", false},
+                      {"material", {{"description", std::string(kAssetMaterial)}}}}}};
+  return schema;
+}
+
+Json projectile_schema() {
+  std::vector<std::string> required;
+  for (const SceneKey& row : kProjectileKeys) required.emplace_back(row.name);
+  Json schema = fields_schema(field_rows<Projectile>(), Json::object(), std::move(required));
+  for (const SceneKey& row : kProjectileKeys) {
+    add_key(schema["properties"], row, tuple_schema(3, row.range));
+  }
   return schema;
 }
 
@@ -167,15 +184,14 @@ Json with_title(const std::string& title, Json schema) {
 Json scene_schema() {
   Json version = number_schema("integer", kSceneVersion);
   Json seed{{"type", "integer"}, {"minimum", 0}, {"maximum", ~std::uint64_t{0}}, {"default", 1}};
-  const Json objects = list_schema({{"type", "object"}});
   const std::array<Json, std::size(kSceneKeys)> schemas{text_schema(),
                                                         version,
                                                         seed,
                                                         list_schema(reference("wall")),
                                                         list_schema(reference("material")),
-                                                        objects,
+                                                        list_schema(reference("projectile")),
                                                         {{"type", "object"}},
-                                                        {{"type", "object"}}};
+                                                        reference("simulation")};
   Json properties = Json::object();
   for (std::size_t i = 0; i < std::size(kSceneKeys); ++i) {
     add_key(properties, kSceneKeys[i], schemas[i]);
@@ -185,77 +201,22 @@ Json scene_schema() {
   schema["definitions"] = {{"wall", wall_schema()},
                            {"shape", shape_schema()},
                            {"pattern", pattern_schema()},
-                           {"material", fields_schema(field_rows<Material>())}};
+                           {"material", fields_schema(field_rows<Material>())},
+                           {"projectile", projectile_schema()},
+                           {"simulation", fields_schema(field_rows<SimulationParams>())}};
   return with_title("sunder scene", std::move(schema));
-}
-
-/// A number of a report.
-struct ReportKey {
-  const char* name;
-  const char* type;
-  const char* description;
-};
-
-constexpr ReportKey kReportKeys[] = {
-    {"version", "string", "Version of the program."},
-    {"seed", "integer", "Seed of the random numbers."},
-    {"sound", "boolean",
-     "True when no chunk is open, not manifold or inverted, none overlap, every inner face is "
-     "matched, and the volume is right to 1e-6 where the one expected is known."},
-    {"chunks", "integer", "Chunks of all walls."},
-    {"triangles", "integer", "Triangles of all chunks."},
-    {"bonds", "integer", "Bonds between chunks and anchors to the world."},
-    {"volume", "number", "Sum of the chunks' volumes. Unit: m³."},
-    {"volume_expected", "number",
-     "Area of the outlines less the openings, by thickness. Unit: m³."},
-    {"volume_error", "number", "Difference of the two by the volume expected."},
-    {"open_chunks", "integer", "Chunks with an edge that only one triangle has."},
-    {"nonmanifold_chunks", "integer", "Chunks with an edge of more than two triangles."},
-    {"inverted_chunks", "integer", "Closed chunks whose volume is not above 0."},
-    {"overlapping_pairs", "integer", "Pairs of chunks whose front faces overlap."},
-    {"unmatched_faces", "integer", "Inner triangles without exactly one partner in another chunk."},
-    {"slivers", "integer", "Chunks whose front is thinner than 1:50."},
-    {"slivers_merged", "integer",
-     "Cells that were merged because they were smaller than min_cell."},
-    {"min_chunk_volume", "number", "Volume of the smallest chunk. Unit: m³."},
-    {"hash", "string", "Of all triangles, bit for bit; 16 hexadecimal digits."},
-};
-
-Json report_schema() {
-  Json properties = Json::object();
-  std::vector<std::string> required;
-  for (const ReportKey& key : kReportKeys) {
-    Json schema{{"type", key.type}, {"description", key.description}};
-    if (schema["type"] == "integer") schema["minimum"] = 0;
-    properties[key.name] = std::move(schema);
-  }
-  // A measure that a format cannot tell is null, not left out.
-  for (const char* key : {"volume_expected", "volume_error", "min_chunk_volume"}) {
-    properties[key]["type"] = {"number", "null"};
-  }
-  properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
-  properties["time"] = {{"type", "object"},
-                        {"description", "What each step took, keys end in _s. Unit: s."},
-                        {"patternProperties", {{"_s$", {{"type", "number"}, {"minimum", 0}}}}}};
-  properties["skipped"] = {{"type", "object"},
-                           {"description", "What was not done because nothing needed it."}};
-  for (const char* key : {"sound", "chunks", "triangles", "volume", "hash"}) {
-    required.emplace_back(key);
-  }
-  Json schema = object_schema(std::move(properties), std::move(required));
-  schema["additionalProperties"] = true;
-  return with_title("sunder report of fracture and check", std::move(schema));
 }
 
 }  // namespace
 
 std::string json_schema(std::string_view which) {
-  constexpr std::string_view kNames[] = {"scene", "material", "report"};
+  constexpr std::string_view kNames[] = {"scene", "material", "report", "impact-report"};
   if (which == "scene") return scene_schema().dump(2) + '\n';
   if (which == "material") {
     return with_title("sunder material", fields_schema(field_rows<Material>())).dump(2) + '\n';
   }
-  if (which == "report") return report_schema().dump(2) + '\n';
+  if (which == "report") return report_schema();
+  if (which == "impact-report") return impact_report_schema();
   throw Error(ErrorCode::usage,
               "no schema of \"" + printable(which, 40) + '"' + hint_for(which, kNames));
 }

@@ -21,13 +21,6 @@ constexpr std::size_t kLongestName = 56;
   throw Error(ErrorCode::output, where + ": " + what);
 }
 
-bool is_portable(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  });
-}
-
 // The exponent bits are looked at together, so that the loop runs in vector registers.
 bool all_finite(std::span<const float> values) {
   std::uint32_t found = 0;
@@ -189,6 +182,13 @@ WallView view_of(const WallAsset& wall, const RenderMeshes& meshes) {
           .bonds = wall.bonds};
 }
 
+bool is_portable(std::string_view name) {
+  return !name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  });
+}
+
 void validate(std::span<const WallView> walls) {
   check_names(walls);
   for (const WallView& wall : walls) {
@@ -250,13 +250,15 @@ MaterialLook look_of(std::string_view material) {
   static constexpr Known kKnown[] = {{"concrete", {{176, 174, 168}, {132, 124, 114}, 0.9, 1, 0}},
                                      {"brick", {{168, 92, 70}, {196, 122, 92}, 0.9, 1, 0}},
                                      {"glass", {{178, 208, 214}, {120, 178, 170}, 0.08, 0.3, 0}},
+                                     {"pmma", {{190, 214, 222}, {140, 190, 200}, 0.1, 0.3, 0}},
+                                     {"gypsum", {{226, 220, 208}, {240, 236, 228}, 0.95, 1, 0}},
                                      {"plaster", {{226, 220, 208}, {240, 236, 228}, 0.95, 1, 0}},
                                      {"stone", {{150, 146, 136}, {186, 178, 162}, 0.85, 1, 0}},
                                      {"wood", {{150, 108, 70}, {206, 168, 118}, 0.8, 0.95, 0}},
                                      {"timber", {{150, 108, 70}, {206, 168, 118}, 0.8, 0.95, 0}},
                                      {"steel", {{140, 144, 150}, {184, 188, 194}, 0.45, 0.35, 1}}};
   for (const Known& known : kKnown) {
-    if (material.starts_with(known.word)) return known.look;
+    if (material.find(known.word) != std::string_view::npos) return known.look;
   }
   std::uint64_t hash = material.size();
   for (const char c : material) hash = mix_bits(hash ^ static_cast<unsigned char>(c));

@@ -43,6 +43,8 @@ WallView view_of(const WallAsset& wall, const RenderMeshes& meshes);
 /// written: array sizes agree, indices in range, every number finite, normals of length 1, names
 /// unique, not empty, at most 56 bytes of A-Z a-z 0-9 _ -.
 void validate(std::span<const WallView> walls);
+/// 1 to 56 characters of A-Z a-z 0-9 _ -: what every program keeps as a node's name.
+bool is_portable(std::string_view name);
 
 /// Counts the names of a wall's chunks up: "wall_chunk_0000", "wall_chunk_0001", …
 class ChunkNames {
@@ -72,7 +74,7 @@ struct MaterialLook {
   std::array<std::uint8_t, 3> outer{}, inner{};
   double outer_roughness = 0.9, inner_roughness = 1, metallic = 0;
 };
-/// Known materials by the word their name starts with, others a muted colour of their name's own.
+/// Known materials by the word in their name, others a muted colour of their name's own.
 MaterialLook look_of(std::string_view material);
 /// One sRGB channel as the linear value that glTF wants, to four decimals.
 double linear(std::uint8_t channel);

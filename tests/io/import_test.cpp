@@ -240,7 +240,7 @@ TEST(Import, ADamagedAnswerIsAnError) {
   try {
     run_reader("odd.glb", {}, []() -> ImportedAsset {
       ImportedAsset asset;
-      asset.walls.push_back({"w", {{"c", {0, 0, 0}, {0, 1, 2}, {0}}}, 0, 0});
+      asset.walls.push_back({"w", "", {{"c", {0, 0, 0}, {0, 1, 2}, {0}}}, 0, 0});
       return asset;  // indices 1 and 2 do not exist
     });
     FAIL();

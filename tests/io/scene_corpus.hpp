@@ -78,9 +78,14 @@ inline constexpr const char* kFullScene = R"json({
   "materials": [{"name": "granite", "density": 2700, "youngs_modulus": 5e10,
                  "poisson_ratio": 0.25, "tensile_strength": 7e6, "fracture_energy": 100,
                  "source": "a quarry"}],
-  "projectiles": [{"radius": 0.25}],
+  "projectiles": [{"name": "ball", "radius": 0.2, "mass": 260.5, "position": [3, 1.5, 5],
+                   "velocity": [0.5, -1.5, -10], "time": 0.75, "youngs_modulus": 2e11,
+                   "poisson_ratio": 0.28, "friction": 0.4, "restitution": 0.6},
+                  {"position": [1, 2, 4], "velocity": [0, 0, 0]}],
   "building": {"storeys": 6},
-  "simulation": {"duration": 5}
+  "simulation": {"duration": 2.5, "step": 0.005, "iterations": 30, "max_error": 0.02,
+                 "gravity": 1.62, "ground": false, "ground_height": -0.5, "break_depth": 2,
+                 "sleep": false, "solver": "bullet"}
 })json";
 
 }  // namespace sunder

@@ -103,7 +103,8 @@ TEST(SceneCorpus, IsThere) {
 TEST(Scene, EveryKeyArrivesWhereItBelongs) {
   const Scene scene = parse_scene(kFullScene, "scene.json");
   EXPECT_EQ(scene.seed, 7u);
-  EXPECT_EQ(scene.not_used, (std::vector<std::string>{"projectiles", "building", "simulation"}));
+  EXPECT_EQ(scene.keys, (std::vector<std::string>{"$schema", "sunder", "seed", "walls", "materials",
+                                                  "projectiles", "building", "simulation"}));
   ASSERT_EQ(scene.walls.size(), 6u);
   const Wall& facade = scene.walls[0];
   EXPECT_EQ(facade.name, "facade");
@@ -138,6 +139,110 @@ TEST(Scene, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(web.radial, 8);
   EXPECT_EQ(web.reach, 1.5);
   EXPECT_EQ(web.rest_cell, 0.7);
+}
+
+TEST(Scene, EveryKeyOfAProjectileArrives) {
+  const Scene scene = parse_scene(kFullScene, "scene.json");
+  ASSERT_EQ(scene.projectiles.size(), 2u);
+  const Projectile& ball = scene.projectiles[0];
+  EXPECT_EQ(ball.name, "ball");
+  EXPECT_EQ(ball.radius, 0.2);
+  EXPECT_EQ(ball.mass, 260.5);
+  EXPECT_EQ(ball.position, (Vec3{3, 1.5, 5}));
+  EXPECT_EQ(ball.velocity, (Vec3{0.5, -1.5, -10}));
+  EXPECT_EQ(ball.time, 0.75);
+  EXPECT_EQ(ball.youngs_modulus, 2e11);
+  EXPECT_EQ(ball.poisson_ratio, 0.28);
+  EXPECT_EQ(ball.friction, 0.4);
+  EXPECT_EQ(ball.restitution, 0.6);
+}
+
+TEST(Scene, EveryKeyOfTheSimulationArrives) {
+  const SimulationParams params = parse_scene(kFullScene, "scene.json").simulation;
+  EXPECT_EQ(params.duration, 2.5);
+  EXPECT_EQ(params.step, 0.005);
+  EXPECT_EQ(params.iterations, 30);
+  EXPECT_EQ(params.max_error, 0.02);
+  EXPECT_EQ(params.gravity, 1.62);
+  EXPECT_FALSE(params.ground);
+  EXPECT_EQ(params.ground_height, -0.5);
+  EXPECT_EQ(params.break_depth, 2);
+  EXPECT_FALSE(params.sleep);
+  EXPECT_EQ(params.solver, "bullet");
+}
+
+/// A scene of one wall "facade" and these projectiles.
+std::string with_projectiles(const std::string& list) {
+  return R"({"sunder": 1, "walls": [{"name": "facade"}], "projectiles": )" + list + "}";
+}
+
+TEST(Scene, WhatAProjectileDoesNotGiveIsTheDefault) {
+  const std::string bare = R"({"position": [1, 2, 3], "velocity": [4, 5, 6]})";
+  const Scene scene =
+      parse_scene(with_projectiles('[' + bare + ", " + bare + ", " + bare + ']'), "s");
+  ASSERT_EQ(scene.projectiles.size(), 3u);
+  EXPECT_EQ(scene.projectiles[0].name, "projectile");
+  EXPECT_EQ(scene.projectiles[1].name, "projectile_2");
+  EXPECT_EQ(scene.projectiles[2].name, "projectile_3");
+  const Projectile expected;
+  for (const Projectile& each : scene.projectiles) {
+    EXPECT_EQ(each.radius, expected.radius);
+    EXPECT_EQ(each.mass, expected.mass);
+    EXPECT_EQ(each.time, expected.time);
+    EXPECT_EQ(each.youngs_modulus, expected.youngs_modulus);
+    EXPECT_EQ(each.restitution, expected.restitution);
+  }
+}
+
+TEST(Scene, WithoutRunKeysNothingFliesAndTheSimulationIsTheDefault) {
+  const Scene scene = parse_scene(R"({"sunder": 1, "walls": [{}]})", "s");
+  const SimulationParams expected;
+  EXPECT_TRUE(scene.projectiles.empty());
+  EXPECT_EQ(scene.simulation.duration, expected.duration);
+  EXPECT_EQ(scene.simulation.step, expected.step);
+  EXPECT_EQ(scene.simulation.solver, "hybrid");
+  EXPECT_TRUE(scene.simulation.ground);
+}
+
+TEST(Scene, TheStepThatAMessageAsksForIsRead) {
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const double duration = 11 + 3589 * random_unit(17, i);
+    const std::string head = R"({"sunder": 1, "walls": [{}], "simulation": {"duration": )" +
+                             number_text(duration) + R"(, "step": )";
+    const std::string message = refusal(head + "1e-6}}");
+    const std::string before = "take a step of at least ";
+    const std::size_t begin = message.find(before) + before.size();
+    const std::string step = message.substr(begin, message.find(" s", begin) - begin);
+    EXPECT_EQ(parse_scene(head + step + "}}", "s").simulation.duration, duration) << message;
+    refusal(head + number_text(std::stod(step) * 0.999999) + "}}");
+  }
+}
+
+TEST(Scene, SpeedIsLimitedInEveryDirection) {
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Vec3 along{random_unit(19, i, 0) - 0.5, random_unit(19, i, 1) - 0.5,
+                     random_unit(19, i, 2) - 0.5};
+    const auto scene = [&](double speed) {
+      const Vec3 v = speed / length(along) * along;
+      return with_projectiles(R"([{"position": [0, 9, 9], "velocity": [)" + number_text(v.x) +
+                              ", " + number_text(v.y) + ", " + number_text(v.z) + "]}]");
+    };
+    EXPECT_NO_THROW(parse_scene(scene(99999.9), "s")) << "case " << i;
+    EXPECT_NE(refusal(scene(100000.1)).find("/projectiles/0/velocity"), std::string::npos);
+  }
+}
+
+TEST(Scene, TellsWhichOfSomeKeysAreGiven) {
+  using Keys = std::vector<std::string>;
+  const Scene full = parse_scene(kFullScene, "s");
+  EXPECT_EQ(given_keys(full, {"projectiles", "building", "simulation"}),
+            (Keys{"projectiles", "building", "simulation"}));
+  EXPECT_EQ(given_keys(full, {"building"}), Keys{"building"});
+  const Scene bare = parse_scene(R"({"sunder": 1, "walls": [{}]})", "s");
+  EXPECT_EQ(given_keys(bare, {"projectiles", "building", "simulation"}), Keys());
+  const Scene set =
+      parse_scene(R"({"sunder": 1, "walls": [{}]})", "s", {.overrides = {"simulation.duration=2"}});
+  EXPECT_EQ(given_keys(set, {"projectiles", "simulation"}), Keys{"simulation"});
 }
 
 TEST(Scene, AWallWithoutKeysIsTheDefaultWall) {
@@ -241,6 +346,22 @@ TEST(Override, ReplacesAValueAndAddsAKey) {
   EXPECT_EQ(std::get<QuadGridParams>(scene.walls[0].pattern).jitter, 0.25);
 }
 
+TEST(Override, ReachesProjectilesAndSimulation) {
+  const Scene scene =
+      parse_scene(kFullScene, "s",
+                  {.overrides = {"projectiles.0.velocity=[0, 0, -20]", "projectiles.0.mass=12",
+                                 "projectiles.1.position.1=7", "simulation.step=0.001",
+                                 "simulation.ground=true", "simulation.solver=hybrid"}});
+  EXPECT_EQ(scene.projectiles[0].velocity, (Vec3{0, 0, -20}));
+  EXPECT_EQ(scene.projectiles[0].mass, 12);
+  EXPECT_EQ(scene.projectiles[1].position, (Vec3{1, 7, 4}));
+  EXPECT_EQ(scene.simulation.step, 0.001);
+  EXPECT_TRUE(scene.simulation.ground);
+  EXPECT_EQ(scene.simulation.solver, "hybrid");
+  EXPECT_EQ(refusal(kFullScene, {.overrides = {"projectiles.0.mass=0"}}),
+            "scene.json: --set: /projectiles/0/mass: 0 is outside [1e-9, 1e9] kg");
+}
+
 TEST(Override, TheLastOneCounts) {
   const Scene scene = parse_scene(kOneWall, "s", {.overrides = {"seed=2", "seed=3"}});
   EXPECT_EQ(scene.seed, 3u);
@@ -319,6 +440,23 @@ TEST(SceneFile, AnAssetIsFoundBesideTheScene) {
   EXPECT_EQ(read_scene(scene).walls[0].asset, (folder.path() / "scenes/parts/wall.glb").string());
 }
 
+TEST(SceneFile, AnAssetKeepsItsMaterialUnlessOneIsGiven) {
+  const Folder folder;
+  folder.write("wall.glb", "glb");
+  const auto material = [&](const std::string& keys) {
+    const fs::path scene = folder.write("s.json", R"({"sunder": 1, "walls": [{)" + keys + "}]}");
+    return read_scene(scene).walls[0].material;
+  };
+  EXPECT_EQ(material(R"("asset": "wall.glb")"), "");
+  EXPECT_EQ(material(R"("asset": "wall.glb", "material": "brick")"), "brick");
+  EXPECT_EQ(material(R"("asset": "wall.glb", "material": "concrete-c30")"), "concrete-c30");
+  EXPECT_EQ(material(""), "concrete-c30");
+  EXPECT_NE(file_refusal(folder.write("s.json", R"({"sunder": 1, "walls": [{"asset": "wall.glb",
+                                                     "material": ""}]})"))
+                .find("/walls/0/material: unknown material \"\""),
+            std::string::npos);
+}
+
 TEST(SceneFile, AnAssetOutsideTheFolderNeedsLeave) {
   const Folder folder;
   const fs::path outside = folder.write("wall.glb", "glb");
@@ -362,11 +500,13 @@ TEST(Materials, BuiltInOnesAreComplete) {
     EXPECT_GT(material.youngs_modulus, 1e9) << material.name;
     EXPECT_GT(material.poisson_ratio, 0) << material.name;
     EXPECT_GT(material.tensile_strength, 1e5) << material.name;
+    EXPECT_GT(material.compressive_strength, material.tensile_strength) << material.name;
     EXPECT_GT(material.fracture_energy, 1) << material.name;
     EXPECT_FALSE(material.source.empty()) << material.name;
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"concrete-c20", "concrete-c30", "concrete-c50",
-                                             "brick", "float-glass", "toughened-glass", "gypsum"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"concrete-c20", "concrete-c30", "concrete-c40",
+                                             "concrete-c50", "brick", "float-glass",
+                                             "toughened-glass", "gypsum", "pmma"}));
   EXPECT_EQ(find_material(builtin_materials(), Wall().material).density, 2400);
 }
 

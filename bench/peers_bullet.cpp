@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <btBulletDynamicsCommon.h>
+
+#include <chrono>
+#include <memory>
+
+#include "bench/peers_bullet.hpp"
+#include "fracture/chunk_mesh.hpp"
+
+namespace sunder {
+namespace {
+
+btVector3 as_bullet(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+// Bullet as its users take it: default settings, one hull per convex part.
+class JointedWall {
+ public:
+  JointedWall(const WallAsset& wall, double strength, double dt, int iterations)
+      : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
+    world_.setGravity({0, -9.81, 0});
+    world_.getSolverInfo().m_numIterations = iterations;
+    add_static(new btStaticPlaneShape({0, 1, 0}, 0));
+    for (std::uint32_t c = 0; c < wall.chunks.size(); ++c) add_chunk(wall, c);
+    for (const Bond& bond : wall.bonds) add_joint(bond, strength * bond.area * dt);
+  }
+  ~JointedWall() {
+    for (auto& joint : joints_) world_.removeConstraint(joint.get());
+    for (auto& body : bodies_) world_.removeRigidBody(body.get());
+  }
+  void add_ball(const Projectile& p) {
+    auto* shape = new btSphereShape(p.radius);
+    shapes_.emplace_back(shape);
+    btVector3 inertia;
+    shape->calculateLocalInertia(p.mass, inertia);
+    bodies_.push_back(std::make_unique<btRigidBody>(p.mass, nullptr, shape, inertia));
+    bodies_.back()->setWorldTransform(btTransform({0, 0, 0, 1}, as_bullet(p.position)));
+    bodies_.back()->setLinearVelocity(as_bullet(p.velocity));
+    world_.addRigidBody(bodies_.back().get());
+  }
+  void step(double dt) { world_.stepSimulation(dt, 0); }
+
+ private:
+  void add_static(btCollisionShape* shape) {
+    shapes_.emplace_back(shape);
+    bodies_.push_back(std::make_unique<btRigidBody>(0, nullptr, shape));
+    world_.addRigidBody(bodies_.back().get());
+  }
+
+  void add_chunk(const WallAsset& wall, std::uint32_t c) {
+    const MassProperties& m = wall.chunks[c];
+    auto* compound = new btCompoundShape;
+    shapes_.emplace_back(compound);
+    for (const auto& part : convex_parts(wall, c)) {
+      auto* hull = new btConvexHullShape;
+      shapes_.emplace_back(hull);
+      for (const std::uint32_t v : part)
+        for (const double z : {-wall.wall.thickness / 2, wall.wall.thickness / 2}) {
+          const Vec2 p = wall.pattern.vertices[v];
+          hull->addPoint(as_bullet(Vec3{p.x, p.y, z} - m.centroid), false);
+        }
+      hull->recalcLocalAabb();
+      hull->setMargin(0.001);
+      compound->addChildShape(btTransform::getIdentity(), hull);
+    }
+    const btVector3 inertia(m.inertia.xx * wall.density, m.inertia.yy * wall.density,
+                            m.inertia.zz * wall.density);
+    bodies_.push_back(
+        std::make_unique<btRigidBody>(m.volume * wall.density, nullptr, compound, inertia));
+    bodies_.back()->setWorldTransform(btTransform({0, 0, 0, 1}, as_bullet(m.centroid)));
+    bodies_.back()->setActivationState(DISABLE_DEACTIVATION);
+    chunks_.push_back(bodies_.back().get());
+    world_.addRigidBody(bodies_.back().get());
+  }
+
+  void add_joint(const Bond& bond, double impulse) {
+    btRigidBody& a = *chunks_[bond.a];
+    btRigidBody& b = bond.b == kWorld ? *bodies_.front() : *chunks_[bond.b];
+    const auto frame = [&](const btRigidBody& body) {
+      btTransform t = btTransform::getIdentity();
+      t.setOrigin(as_bullet(bond.centroid) - body.getWorldTransform().getOrigin());
+      return t;
+    };
+    joints_.push_back(std::make_unique<btFixedConstraint>(a, b, frame(a), frame(b)));
+    joints_.back()->setBreakingImpulseThreshold(impulse);
+    world_.addConstraint(joints_.back().get(), true);
+  }
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld world_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<btRigidBody*> chunks_;
+  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+};
+
+}  // namespace
+
+std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_strength,
+                                      const Projectile& projectile, double dt, int iterations,
+                                      int steps, double seconds) {
+  JointedWall world(wall, tensile_strength, dt, iterations);
+  world.add_ball(projectile);
+  std::vector<double> result;
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < steps; ++i) {
+    const auto before = std::chrono::steady_clock::now();
+    world.step(dt);
+    const auto after = std::chrono::steady_clock::now();
+    result.push_back(std::chrono::duration<double, std::milli>(after - before).count());
+    if (std::chrono::duration<double>(after - start).count() > seconds) break;
+  }
+  return result;
+}
+
+}  // namespace sunder

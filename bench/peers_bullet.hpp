@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "fracture/asset.hpp"
+#include "sim/projectile.hpp"
+
+namespace sunder {
+
+/// What the wall costs when every chunk is an active body, joined to its neighbours by Bullet's
+/// fixed constraints that break at area × strength × dt: milliseconds of each of `steps` steps, or
+/// fewer when `seconds` are used up.
+std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_strength,
+                                      const Projectile& projectile, double dt, int iterations,
+                                      int steps, double seconds);
+
+}  // namespace sunder

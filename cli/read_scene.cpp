@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/read_scene.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "cli/wall_scene.hpp"
+#include "meshing/error.hpp"
+
+namespace sunder {
+
+Scene read_scene(const Options& options) {
+  const SceneParams params{options.overrides, options.allow_outside};
+  const bool is_file = options.wall_scene.empty();
+  try {
+    Scene scene = is_file ? read_scene(options.inputs.front(), params)
+                          : parse_scene(options.wall_scene, kCommandLine, params);
+    if (options.seed) scene.seed = *options.seed;
+    return scene;
+  } catch (const Error& error) {
+    throw named_by_option(error, is_file ? options.inputs.front().string() : kCommandLine);
+  }
+}
+
+int thread_count(const Options& options) {
+  if (options.threads > 0) return options.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace sunder

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/gltf_binary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace sunder {
+namespace {
+
+// Collects what is converted on the way out into large writes.
+class BinaryWriter {
+ public:
+  explicit BinaryWriter(ByteSink& sink) : sink_(sink), buffer_(kSize) {}
+  ~BinaryWriter() = default;
+
+  template <class T>
+  void put(T value) {
+    if (used_ + sizeof value > kSize) flush();
+    std::memcpy(buffer_.data() + used_, &value, sizeof value);
+    used_ += sizeof value;
+  }
+  void put(Vec3 v) {
+    put(std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+  }
+  // Texture coordinates, v turned down as glTF wants it: a block at a time, in vector registers.
+  void put_uvs(std::span<const float> uvs) {
+    std::array<float, 4096> block;
+    while (!uvs.empty()) {
+      const std::size_t count = std::min(uvs.size(), block.size());
+      for (std::size_t i = 0; i + 1 < count; i += 2) {
+        block[i] = uvs[i];
+        block[i + 1] = 1.0f - uvs[i + 1];
+      }
+      if (used_ + count * sizeof(float) > kSize) flush();
+      std::memcpy(buffer_.data() + used_, block.data(), count * sizeof(float));
+      used_ += count * sizeof(float);
+      uvs = uvs.subspan(count);
+    }
+  }
+  void flush() {
+    if (used_ > 0) sink_.write(std::span(buffer_).first(used_));
+    used_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kSize = std::size_t{1} << 18;
+  ByteSink& sink_;
+  std::vector<std::byte> buffer_;
+  std::size_t used_ = 0;
+};
+
+void write_bonds(std::span<const Bond> bonds, BinaryWriter& out) {
+  for (const Bond& bond : bonds) {
+    out.put(std::array{bond.a, bond.b});
+  }
+  for (const Bond& bond : bonds) out.put(static_cast<float>(bond.area));
+  for (const Bond& bond : bonds) out.put(bond.centroid);
+  for (const Bond& bond : bonds) out.put(bond.normal);
+}
+
+void write_list(const UniqueLists::List& list, BinaryWriter& out) {
+  if (list.largest > kLargestShortIndex) {
+    for (const std::uint32_t index : list.indices) out.put(index);
+    return;
+  }
+  for (const std::uint32_t index : list.indices) out.put(static_cast<std::uint16_t>(index));
+  if (list.indices.size() % 2 != 0) out.put(std::uint16_t{0});
+}
+
+void write_sphere_vertices(const std::vector<double>& radii, BinaryWriter& out) {
+  if (radii.empty()) return;
+  const SphereMesh sphere = sphere_mesh();
+  for (const double radius : radii) {
+    for (const Vec3 v : sphere.vertices) out.put(radius * v);
+  }
+}
+
+// Calls put(pose) for every key of every history.
+template <class Put>
+void for_each_pose(const GltfLayout& layout, const Put& put) {
+  const GltfAnimation& animation = layout.animation;
+  for (const GltfAnimation::History& history : animation.histories) {
+    const GltfAnimation::Keys keys = animation.key_ranges[history.keys];
+    for (std::uint32_t k = 0; k < keys.count; ++k) {
+      put(pose_of(*layout.recording, animation, history, keys.first + k), k == 0);
+    }
+  }
+}
+
+// q and -q are one attitude: the sign nearer to the key before keeps interpolation on the short
+// way in players that do not see to it.
+void write_rotations(const GltfLayout& layout, BinaryWriter& out) {
+  Quaternion last;
+  for_each_pose(layout, [&](const Pose& pose, bool is_first) {
+    Quaternion q = pose.rotation;
+    const double size = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    const double along = q.x * last.x + q.y * last.y + q.z * last.z + q.w * last.w;
+    const double scale = (is_first ? q.w < 0 : along < 0) ? -1 / size : 1 / size;
+    q = {scale * q.x, scale * q.y, scale * q.z, scale * q.w};
+    out.put(std::array{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
+                       static_cast<float>(q.w)});
+    last = q;
+  });
+}
+
+void write_animation(const GltfLayout& layout, BinaryWriter& out) {
+  const GltfAnimation& animation = layout.animation;
+  if (animation.empty()) return;
+  for (const std::uint32_t step : animation.steps) {
+    out.put(static_cast<float>(layout.recording->times[step]));
+  }
+  for_each_pose(layout, [&out](const Pose& pose, bool) { out.put(pose.position); });
+  if (!animation.arrivals.empty()) {
+    out.put(Vec3{0, 0, 0});
+    out.put(Vec3{1, 1, 1});
+  }
+  write_rotations(layout, out);
+}
+
+}  // namespace
+
+void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout, ByteSink& sink) {
+  const auto pass = [&sink](std::span<const float> values) {
+    if (!values.empty()) sink.write(std::as_bytes(values));
+  };
+  BinaryWriter out(sink);
+  for (const WallView& wall : walls) pass(wall.positions);
+  write_sphere_vertices(layout.radii, out);
+  out.flush();
+  for (const WallView& wall : walls) pass(wall.normals);
+  if (!layout.radii.empty()) write_sphere_vertices({1}, out);
+  for (const WallView& wall : walls) out.put_uvs(wall.uvs);
+  for (const UniqueLists::List& list : layout.lists.lists) write_list(list, out);
+  if (!layout.radii.empty()) {
+    for (const std::uint16_t index : sphere_mesh().indices) out.put(index);
+  }
+  for (const WallView& wall : walls) write_bonds(wall.bonds, out);
+  write_animation(layout, out);
+  out.flush();
+}
+
+}  // namespace sunder

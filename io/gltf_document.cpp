@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/gltf_document.hpp"
+
+#include "io/gltf_motion.hpp"
+#include "io/gltf_text.hpp"
+
+namespace sunder {
+namespace {
+
+// One glTF document. Objects refer to each other by position in their array, so every array walks
+// walls and chunks in the same order and counts along.
+class Document {
+ public:
+  Document(std::span<const WallView> walls, const GltfLayout& layout, ByteSink& sink)
+      : walls_(walls), layout_(layout), out_(sink), motion_(layout, accessor_count(), out_) {}
+
+  std::uint64_t write(const std::string& binary_name) {
+    out_.text(R"({"asset":{"version":"2.0","generator":"sunder )" SUNDER_VERSION
+              R"("},"scene":0,)");
+    write_scene();
+    write_nodes();
+    if (layout_.mesh_count > 0 || !layout_.radii.empty()) {
+      write_meshes();
+      write_materials();
+    }
+    write_accessors();
+    write_views();
+    motion_.write_animation(walls_.size(), first_projectile());
+    if (layout_.binary_size > 0) {
+      out_.text(R"(,"buffers":[{"byteLength":)");
+      out_.integer(layout_.binary_size);
+      if (!binary_name.empty()) {
+        out_.text(R"(,"uri":)");
+        out_.quoted(binary_name);
+      }
+      out_.text("}]");
+    }
+    out_.text("}");
+    while (out_.size() % 4 != 0) out_.text(" ");
+    out_.flush();
+    return out_.size();
+  }
+
+ private:
+  bool has_mesh(std::size_t w, std::uint32_t chunk) const {
+    const WallView& wall = walls_[w];
+    const auto& lists = layout_.lists.of_wall[w];
+    return is_drawn(wall, lists, wall.outer[chunk]) || is_drawn(wall, lists, wall.inner[chunk]);
+  }
+
+  void write_scene();
+  void write_nodes();
+  void write_wall_node(std::size_t w, std::uint64_t first_child);
+  void write_wall_extras(std::size_t w);
+  void write_chunk_node(const WallView& wall, std::uint32_t chunk, std::string_view name,
+                        std::uint64_t mesh);
+  void write_meshes();
+  void write_primitive(std::uint64_t accessor, std::uint32_t list, std::uint32_t material);
+  void write_materials();
+  void write_accessors();
+  void write_vertex_accessors(const WallView& wall, std::uint32_t chunk, std::uint64_t first);
+  void write_bounds(std::span<const float> positions);
+  void write_list_accessors();
+  void write_bond_accessors(std::size_t w);
+  void write_views();
+  void write_view(GltfBlock block, std::string_view rest, bool& first);
+
+  // Accessors: index lists, then three per mesh, then four per wall with bonds.
+  std::uint64_t first_vertex_accessor() const { return layout_.lists.lists.size(); }
+  std::uint64_t first_bond_accessor() const {
+    return first_vertex_accessor() + 3 * layout_.mesh_count;
+  }
+  std::uint64_t accessor_count() const {
+    std::uint64_t count = first_bond_accessor();
+    for (const WallView& wall : walls_) count += wall.bonds.empty() ? 0 : 4;
+    return count;
+  }
+  // Nodes: walls, their chunks, projectiles.
+  std::uint64_t first_projectile() const {
+    std::uint64_t count = walls_.size();
+    for (const WallView& wall : walls_) count += wall.chunk_count();
+    return count;
+  }
+
+  std::span<const WallView> walls_;
+  const GltfLayout& layout_;
+  GltfText out_;
+  GltfMotion motion_;
+  bool first_accessor_ = true;
+};
+
+void Document::write_scene() {
+  out_.text(R"("scenes":[{)");
+  bool first = true;
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    if (first) out_.text(R"("nodes":[)");
+    out_.separate(first);
+    out_.integer(w);
+  }
+  for (std::uint64_t p = 0; p < layout_.mesh_of.size(); ++p) {
+    out_.text(",");
+    out_.integer(first_projectile() + p);
+  }
+  if (!first) out_.text("]");
+  motion_.write_scene_extras();
+  out_.text("}]");
+}
+
+// The walls come first, so that wall w is node w.
+void Document::write_nodes() {
+  if (walls_.empty()) return;
+  out_.text(R"(,"nodes":[)");
+  std::uint64_t child = walls_.size();
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    if (w > 0) out_.text(",");
+    write_wall_node(w, child);
+    child += walls_[w].chunk_count();
+  }
+  std::uint64_t mesh = 0;
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    ChunkNames name(walls_[w].first_chunk);
+    for (std::uint32_t c = 0; c < walls_[w].chunk_count(); ++c, ++name) {
+      write_chunk_node(walls_[w], c, *name, has_mesh(w, c) ? mesh++ : kUnused);
+    }
+  }
+  motion_.write_nodes();
+  out_.text("]");
+}
+
+void Document::write_wall_node(std::size_t w, std::uint64_t first_child) {
+  const WallView& wall = walls_[w];
+  out_.text(R"({"name":)");
+  out_.quoted(wall.name);
+  if (wall.position != Vec3{}) {
+    out_.text(R"(,"translation":)");
+    out_.numbers({wall.position.x, wall.position.y, wall.position.z});
+  }
+  if (wall.rotation != Quaternion{}) {
+    out_.text(R"(,"rotation":)");
+    out_.numbers({wall.rotation.x, wall.rotation.y, wall.rotation.z, wall.rotation.w});
+  }
+  bool first = true;
+  for (std::uint32_t c = 0; c < wall.chunk_count(); ++c) {
+    if (first) out_.text(R"(,"children":[)");
+    out_.separate(first);
+    out_.integer(first_child + c);
+  }
+  if (!first) out_.text("]");
+  write_wall_extras(w);
+  out_.text("}");
+}
+
+void Document::write_wall_extras(std::size_t w) {
+  const WallView& wall = walls_[w];
+  out_.key(R"(,"extras":{"sunder":{"sunder":1,"thickness":)", wall.thickness);
+  out_.key(R"(,"density":)", wall.density);
+  out_.key(R"(,"volume_expected":)", wall.volume_expected);
+  out_.text(R"(,"material":)");
+  out_.quoted(wall.material);
+  out_.text(R"(,"chunks":)");
+  out_.integer(wall.chunk_count());
+  out_.text(R"(,"bonds":{"count":)");
+  out_.integer(wall.bonds.size());
+  if (!wall.bonds.empty()) {
+    std::uint64_t accessor = first_bond_accessor();
+    for (std::size_t i = 0; i < w; ++i) accessor += walls_[i].bonds.empty() ? 0 : 4;
+    for (const std::string_view name :
+         {R"(,"pairs":)", R"(,"area":)", R"(,"centroid":)", R"(,"normal":)"}) {
+      out_.text(name);
+      out_.integer(accessor++);
+    }
+  }
+  out_.text("}}}");
+}
+
+void Document::write_chunk_node(const WallView& wall, std::uint32_t chunk, std::string_view name,
+                                std::uint64_t mesh) {
+  const MassProperties& p = wall.chunks[chunk];
+  const double density = wall.density;
+  out_.text(R"(,{"name":")");
+  out_.text(name);
+  if (mesh != kUnused) {
+    out_.text(R"(","mesh":)");
+    out_.integer(mesh);
+    out_.text(R"(,"extras":{"sunder":{"mass":)");
+  } else {
+    out_.text(R"(","extras":{"sunder":{"mass":)");
+  }
+  out_.number(density * p.volume);
+  out_.text(R"(,"volume":)");
+  out_.number(p.volume);
+  out_.text(R"(,"centroid":[)");
+  out_.number(p.centroid.x);
+  out_.text(",");
+  out_.number(p.centroid.y);
+  out_.text(",");
+  out_.number(p.centroid.z);
+  out_.text(R"(],"inertia":[)");
+  out_.number(density * p.inertia.xx);
+  out_.text(",");
+  out_.number(density * p.inertia.yy);
+  out_.text(",");
+  out_.number(density * p.inertia.zz);
+  out_.text(",");
+  out_.number(density * p.inertia.xy);
+  out_.text(",");
+  out_.number(density * p.inertia.xz);
+  out_.text(",");
+  out_.number(density * p.inertia.yz);
+  out_.text("]}}}");
+}
+
+void Document::write_meshes() {
+  out_.text(R"(,"meshes":[)");
+  std::uint64_t accessor = first_vertex_accessor();
+  bool first = true;
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const WallView& wall = walls_[w];
+    const auto& lists = layout_.lists.of_wall[w];
+    const GltfLayout::MaterialIds materials = layout_.materials_of[w];
+    ChunkNames name(wall.first_chunk);
+    for (std::uint32_t c = 0; c < wall.chunk_count(); ++c, ++name) {
+      if (!has_mesh(w, c)) continue;
+      out_.separate(first);
+      out_.text(R"({"name":")");
+      out_.text(*name);
+      out_.text(R"(","primitives":[)");
+      const bool outer = is_drawn(wall, lists, wall.outer[c]);
+      if (outer) write_primitive(accessor, lists[wall.outer[c]], materials.outer);
+      if (is_drawn(wall, lists, wall.inner[c])) {
+        if (outer) out_.text(",");
+        write_primitive(accessor, lists[wall.inner[c]], materials.inner);
+      }
+      out_.text("]}");
+      accessor += 3;
+    }
+  }
+  motion_.write_meshes(first);
+  out_.text("]");
+}
+
+void Document::write_primitive(std::uint64_t accessor, std::uint32_t list, std::uint32_t material) {
+  out_.text(R"({"attributes":{"POSITION":)");
+  out_.integer(accessor);
+  out_.text(R"(,"NORMAL":)");
+  out_.integer(accessor + 1);
+  out_.text(R"(,"TEXCOORD_0":)");
+  out_.integer(accessor + 2);
+  out_.text(R"(},"indices":)");
+  out_.integer(list);
+  out_.text(R"(,"material":)");
+  out_.integer(material);
+  out_.text("}");
+}
+
+void Document::write_materials() {
+  out_.text(R"(,"materials":[)");
+  bool first = true;
+  for (const auto& [name, inner] : layout_.materials) {
+    const MaterialLook look = look_of(name);
+    const auto& colour = inner ? look.inner : look.outer;
+    out_.separate(first);
+    out_.text(R"({"name":)");
+    out_.quoted(name + (inner ? "_inner" : "_outer"));
+    out_.text(R"(,"pbrMetallicRoughness":{"baseColorFactor":)");
+    out_.numbers({linear(colour[0]), linear(colour[1]), linear(colour[2]), 1});
+    out_.text(R"(,"metallicFactor":)");
+    out_.number(look.metallic);
+    out_.text(R"(,"roughnessFactor":)");
+    out_.number(inner ? look.inner_roughness : look.outer_roughness);
+    out_.text("}}");
+  }
+  out_.text("]");
+}
+
+void Document::write_accessors() {
+  if (layout_.binary_size == 0) return;
+  out_.text(R"(,"accessors":[)");
+  write_list_accessors();
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    for (std::uint32_t c = 0; c < walls_[w].chunk_count(); ++c) {
+      if (has_mesh(w, c)) write_vertex_accessors(walls_[w], c, layout_.first_vertex[w]);
+    }
+  }
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    if (!walls_[w].bonds.empty()) write_bond_accessors(w);
+  }
+  motion_.write_accessors(first_accessor_);
+  out_.text("]");
+}
+
+void Document::write_list_accessors() {
+  for (std::size_t i = 0; i < layout_.lists.lists.size(); ++i) {
+    const UniqueLists::List& list = layout_.lists.lists[i];
+    out_.separate(first_accessor_);
+    out_.text(R"({"bufferView":)");
+    out_.integer(layout_[GltfBlock::indices].view);
+    out_.text(R"(,"byteOffset":)");
+    out_.integer(layout_.list_begin[i]);
+    out_.text(list.largest <= kLargestShortIndex ? R"(,"componentType":5123,"count":)"
+                                                 : R"(,"componentType":5125,"count":)");
+    out_.integer(list.indices.size());
+    out_.text(R"(,"type":"SCALAR"})");
+  }
+}
+
+void Document::write_vertex_accessors(const WallView& wall, std::uint32_t chunk,
+                                      std::uint64_t first) {
+  const std::uint64_t vertex = first + wall.vertex_begin[chunk];
+  const std::uint64_t count = wall.vertex_count(chunk);
+  out_.separate(first_accessor_);
+  out_.text(R"({"bufferView":0,"byteOffset":)");
+  out_.integer(12 * vertex);
+  out_.text(R"(,"componentType":5126,"count":)");
+  out_.integer(count);
+  out_.text(R"(,"type":"VEC3",)");
+  write_bounds(wall.positions.subspan(3 * std::size_t{wall.vertex_begin[chunk]}, 3 * count));
+  out_.text(R"(},{"bufferView":1,"byteOffset":)");
+  out_.integer(12 * vertex);
+  out_.text(R"(,"componentType":5126,"count":)");
+  out_.integer(count);
+  out_.text(R"(,"type":"VEC3"},{"bufferView":2,"byteOffset":)");
+  out_.integer(8 * vertex);
+  out_.text(R"(,"componentType":5126,"count":)");
+  out_.integer(count);
+  out_.text(R"(,"type":"VEC2"})");
+}
+
+void Document::write_bounds(std::span<const float> positions) {
+  float low[3] = {positions[0], positions[1], positions[2]};
+  float high[3] = {positions[0], positions[1], positions[2]};
+  for (std::size_t i = 3; i < positions.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float value = positions[i + k];
+      low[k] = value < low[k] ? value : low[k];
+      high[k] = value > high[k] ? value : high[k];
+    }
+  }
+  const auto triple = [this](const float* values) {
+    out_.number(static_cast<double>(values[0]));
+    out_.text(",");
+    out_.number(static_cast<double>(values[1]));
+    out_.text(",");
+    out_.number(static_cast<double>(values[2]));
+  };
+  out_.text(R"("min":[)");
+  triple(low);
+  out_.text(R"(],"max":[)");
+  triple(high);
+  out_.text("]");
+}
+
+void Document::write_bond_accessors(std::size_t w) {
+  const std::uint64_t count = walls_[w].bonds.size();
+  std::uint64_t offset = layout_.bonds_begin[w];
+  const auto accessor = [&](std::string_view kind, std::uint64_t bytes) {
+    out_.separate(first_accessor_);
+    out_.text(R"({"bufferView":)");
+    out_.integer(layout_[GltfBlock::bonds].view);
+    out_.text(R"(,"byteOffset":)");
+    out_.integer(offset);
+    out_.text(kind);
+    out_.text(R"(,"count":)");
+    out_.integer(count);
+    out_.text("}");
+    offset += bytes * count;
+  };
+  accessor(R"(,"componentType":5125,"type":"VEC2")", 8);
+  accessor(R"(,"componentType":5126,"type":"SCALAR")", 4);
+  accessor(R"(,"componentType":5126,"type":"VEC3")", 12);
+  accessor(R"(,"componentType":5126,"type":"VEC3")", 12);
+}
+
+void Document::write_view(GltfBlock id, std::string_view rest, bool& first) {
+  const GltfLayout::Block& block = layout_[id];
+  if (block.size == 0) return;
+  out_.separate(first);
+  out_.text(R"({"buffer":0,"byteOffset":)");
+  out_.integer(block.begin);
+  out_.text(R"(,"byteLength":)");
+  out_.integer(block.size);
+  out_.text(rest);
+  out_.text("}");
+}
+
+void Document::write_views() {
+  if (layout_.binary_size == 0) return;
+  bool first = true;
+  out_.text(R"(,"bufferViews":[)");
+  write_view(GltfBlock::positions, R"(,"byteStride":12,"target":34962)", first);
+  write_view(GltfBlock::normals, R"(,"byteStride":12,"target":34962)", first);
+  write_view(GltfBlock::uvs, R"(,"byteStride":8,"target":34962)", first);
+  write_view(GltfBlock::indices, R"(,"target":34963)", first);
+  for (const GltfBlock block :
+       {GltfBlock::bonds, GltfBlock::times, GltfBlock::translations, GltfBlock::rotations}) {
+    write_view(block, "", first);
+  }
+  out_.text("]");
+}
+
+}  // namespace
+
+std::uint64_t write_gltf_document(std::span<const WallView> walls, const GltfLayout& layout,
+                                  const std::string& binary_name, ByteSink& sink) {
+  return Document(walls, layout, sink).write(binary_name);
+}
+
+}  // namespace sunder

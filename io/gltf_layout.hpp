@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/gltf_animation.hpp"
+#include "io/wall_view.hpp"
+
+namespace sunder {
+
+/// 65535 in 16 bits means "restart the strip", so it is not an index.
+constexpr std::uint32_t kLargestShortIndex = 65534;
+constexpr std::uint32_t kUnused = UINT32_MAX;
+
+/// The binary is a few large blocks, each one bufferView: what vertices and triangles of all walls
+/// and spheres consist of, the bonds, and the animation's keys.
+enum class GltfBlock { positions, normals, uvs, indices, bonds, times, translations, rotations };
+constexpr std::size_t kGltfBlocks = 8;
+
+/// Everything about a glTF file that is known before its first byte is written. Bytes of the
+/// blocks follow each other in the order of GltfBlock; within each: walls, then spheres.
+struct GltfLayout {
+  struct Block {
+    std::uint64_t begin = 0, size = 0;
+    std::uint32_t view = kUnused;  ///< bufferView; kUnused: the block is empty
+  };
+  struct MaterialIds {
+    std::uint32_t outer = kUnused, inner = kUnused;
+  };
+
+  UniqueLists lists;
+  std::vector<std::uint64_t> list_begin;                // bytes into the index block
+  std::vector<std::uint64_t> first_vertex;              // per wall
+  std::vector<std::uint64_t> bonds_begin;               // per wall, bytes into the bond block
+  std::vector<std::pair<std::string, bool>> materials;  // name, inner
+  std::vector<MaterialIds> materials_of;                // per wall
+  std::uint64_t mesh_count = 0;                         // of chunks
+  std::array<Block, kGltfBlocks> blocks;
+  std::uint64_t binary_size = 0;
+
+  // Of a recording.
+  const Recording* recording = nullptr;
+  GltfAnimation animation;
+  std::vector<double> radii;           // distinct ones of spheres, a mesh each
+  std::vector<std::uint32_t> mesh_of;  // per projectile: into radii
+  std::uint32_t sphere_material = kUnused;
+  std::uint64_t first_sphere_vertex = 0;
+  std::uint64_t sphere_list_begin = 0;  // bytes into the index block
+
+  const Block& operator[](GltfBlock block) const { return blocks[static_cast<std::size_t>(block)]; }
+};
+
+GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording);
+
+/// A wall's chunk has triangles of this list (see RenderMeshes::outer, inner).
+inline bool is_drawn(const WallView& wall, const std::vector<std::uint32_t>& lists,
+                     std::uint32_t list) {
+  return list < wall.lists.size() && lists[list] != kUnused;
+}
+
+/// The sphere of radius 1 that stands for projectiles: rings of latitude about the y axis.
+struct SphereMesh {
+  std::vector<Vec3> vertices;  ///< on the unit sphere: normals too
+  std::vector<std::uint16_t> indices;
+};
+constexpr std::uint32_t kSphereRings = 16, kSphereSectors = 32;
+constexpr std::uint32_t kSphereVertices = (kSphereRings - 1) * kSphereSectors + 2;
+constexpr std::uint32_t kSphereIndices = 6 * (kSphereRings - 1) * kSphereSectors;
+SphereMesh sphere_mesh();
+
+}  // namespace sunder

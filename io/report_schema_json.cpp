@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "io/report_schema.hpp"
+
+namespace sunder {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A value of a report.
+struct ReportKey {
+  const char* name;
+  const char* type;
+  const char* description;
+};
+
+constexpr ReportKey kReportKeys[] = {
+    {"version", "string", "Version of the program."},
+    {"seed", "integer", "Seed of the random numbers."},
+    {"sound", "boolean",
+     "True when no chunk is open, not manifold or inverted, none overlap, every inner face is "
+     "matched, and the volume is right to 1e-6 where the one expected is known."},
+    {"chunks", "integer", "Chunks of all walls."},
+    {"triangles", "integer", "Triangles of all chunks."},
+    {"bonds", "integer", "Bonds between chunks and anchors to the world."},
+    {"volume", "number", "Sum of the chunks' volumes. Unit: m³."},
+    {"volume_expected", "number",
+     "Area of the outlines less the openings, by thickness. Unit: m³."},
+    {"volume_error", "number", "Difference of the two by the volume expected."},
+    {"open_chunks", "integer", "Chunks with an edge that only one triangle has."},
+    {"nonmanifold_chunks", "integer", "Chunks with an edge of more than two triangles."},
+    {"inverted_chunks", "integer", "Closed chunks whose volume is not above 0."},
+    {"overlapping_pairs", "integer", "Pairs of chunks whose front faces overlap."},
+    {"unmatched_faces", "integer", "Inner triangles without exactly one partner in another chunk."},
+    {"slivers", "integer", "Chunks whose front is thinner than 1:50."},
+    {"slivers_merged", "integer",
+     "Cells that were merged because they were smaller than min_cell."},
+    {"min_chunk_volume", "number", "Volume of the smallest chunk. Unit: m³."},
+    {"hash", "string", "Of all triangles, bit for bit; 16 hexadecimal digits."},
+};
+
+constexpr ReportKey kImpactKeys[] = {
+    {"version", "string", "Version of the program."},
+    {"seed", "integer", "Seed of the random numbers."},
+    {"steps", "integer", "Steps, one recorded pose each."},
+    {"substeps", "integer", "Parts that the steps were divided into, all together."},
+    {"simulated_s", "number", "Time that was simulated. Unit: s."},
+    {"wall_s", "number", "Time that the run took. Unit: s."},
+    {"step_ms", "object", "Time that a step took. Unit: ms."},
+    {"bodies", "integer", "Moving bodies at the end."},
+    {"chunks", "integer", "Chunks of all walls at the end."},
+    {"chunks_freed", "integer", "Chunks that are no longer part of a standing wall."},
+    {"chunks_split", "integer", "Free chunks that broke again."},
+    {"broken_joints", "array", "Joints of a building that broke; empty without one."},
+    {"broken_bonds", "integer", "Bonds and anchors that broke."},
+    {"crack_area", "number", "New crack surface, one side counted. Unit: m²."},
+    {"freed_mass", "number", "Mass that is no longer part of a standing wall. Unit: kg."},
+    {"freed", "object", "Sizes of the bodies that came free."},
+    {"max_utilisation", "number", "Largest demand divided by capacity; 1 breaks."},
+    {"sag", "null", "Of a building; null without one. Unit: m."},
+    {"reactions", "object", "What ground and anchors gave."},
+    {"momentum_error", "number",
+     "Largest violation of the balance of momentum in a step, by the largest momentum."},
+    {"penetration_max", "number", "Deepest overlap of two bodies at the end of a step. Unit: m."},
+    {"energy", "object", "Where the energy went. Unit: J."},
+    {"projectiles", "array", "What became of each projectile."},
+    {"breaks", "array", "What broke, in order of time."},
+    {"solves", "object", "Solves of the static solver; zeros: there was none."},
+    {"hash", "string", "Of all poses and breaks, bit for bit; 16 hexadecimal digits."},
+    {"skipped", "object", "What was not done because nothing needed it."},
+    {"warnings", "array", "What limits the trust in these numbers."},
+    {"time", "object", "What each part of the run took, keys end in _s. Unit: s."},
+};
+
+constexpr ReportKey kStepKeys[] = {
+    {"median", "number", "Half of the steps took less."},
+    {"p95", "number", "19 of 20 steps took less."},
+    {"max", "number", "The longest step."},
+};
+
+constexpr ReportKey kFreedKeys[] = {
+    {"largest_mass", "number", "Heaviest body that came free. Unit: kg."},
+    {"by_decade", "array",
+     "Bodies that came free with a mass from a tenth of the heaviest to it, from a hundredth to a "
+     "tenth …"},
+};
+
+constexpr ReportKey kReactionKeys[] = {
+    {"impulse", "array", "Sum over the run, x, y and z. Unit: N s."},
+};
+
+constexpr ReportKey kEnergyKeys[] = {
+    {"in", "number", "Kinetic energy of the projectiles at their start."},
+    {"kinetic", "number", "Of everything that moves at the end."},
+    {"potential", "number", "Of it, against where it stood or started."},
+    {"strain", "number", "Stored elastically."},
+    {"fracture", "number", "Taken by new cracks, less what toughening had stored."},
+    {"friction", "number", "Lost by sliding."},
+    {"contact", "number", "Lost by crushing and contacts that are not elastic."},
+    {"numerical", "number", "What remains: the error of the simulation."},
+    {"peak_ratio", "number", "Largest mechanical energy by what had gone in by then."},
+};
+
+constexpr ReportKey kProjectileKeys[] = {
+    {"name", "string", "As in the scene."},
+    {"hit", "boolean", "Met a wall."},
+    {"perforated", "boolean", "Left the wall on the other side."},
+    {"speed_before", "number", "At the first contact with a wall. Unit: m/s."},
+    {"residual_speed", "number", "Behind the wall; 0: it did not get through. Unit: m/s."},
+    {"ballistic_speed", "number|null",
+     "From which it goes through the wall, by the model; null: never. Unit: m/s."},
+    {"contact_force", "number", "Peak at the first contact, by the model. Unit: N."},
+};
+
+constexpr ReportKey kBreakKeys[] = {
+    {"time", "number", "Unit: s."},
+    {"wall", "string", "Name of the wall."},
+    {"point", "array", "Of the contact, x, y and z in the world. Unit: m."},
+    {"speed", "number", "Of approach. Unit: m/s."},
+    {"utilisation", "number", "Demand divided by capacity where it was largest."},
+    {"bonds_broken", "integer", "Bonds and anchors that broke."},
+    {"chunks_freed", "integer", "Chunks that came free."},
+};
+
+constexpr ReportKey kSolveKeys[] = {
+    {"full", "integer", "With a new factorisation."},
+    {"update", "integer", "With an updated factorisation."},
+    {"skipped", "integer", "Not needed: no load had changed."},
+};
+
+constexpr ReportKey kSkippedKeys[] = {
+    {"walls_untouched", "integer", "Walls that nothing hit: no collision shapes, no motion."},
+    {"hulls_not_built", "integer", "Collision shapes of chunks that nothing came near."},
+    {"chunk_steps_not_simulated", "integer", "Chunks × steps without a body of their own."},
+    {"body_steps_asleep", "integer", "Bodies × steps at rest."},
+    {"cells_not_searched", "integer", "Cells that the search for islands left out."},
+    {"poses_not_recorded", "integer", "Poses of what did not move."},
+};
+
+/// An object of these keys, all of them required.
+Json object_of(std::span<const ReportKey> keys) {
+  Json properties = Json::object(), required = Json::array();
+  for (const ReportKey& key : keys) {
+    Json schema{{"type", key.type}, {"description", key.description}};
+    if (schema["type"] == "number|null") schema["type"] = {"number", "null"};
+    if (schema["type"] == "integer") schema["minimum"] = 0;
+    properties[key.name] = std::move(schema);
+    required.push_back(key.name);
+  }
+  return {{"type", "object"}, {"properties", properties}, {"required", required}};
+}
+
+/// Says what is in a key that object_of only named.
+void fill(Json& key, Json content) {
+  key.update(content);
+}
+
+Json list_of(Json items) {
+  return {{"items", std::move(items)}};
+}
+
+Json list_of(std::size_t size, Json items) {
+  return {{"items", std::move(items)}, {"minItems", size}, {"maxItems", size}};
+}
+
+Json seconds() {
+  return {{"patternProperties", {{"_s$", {{"type", "number"}, {"minimum", 0}}}}}};
+}
+
+std::string text_of(const char* title, const Json& schema) {
+  Json whole{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  whole.update(schema);
+  whole["additionalProperties"] = true;
+  return whole.dump(2) + '\n';
+}
+
+}  // namespace
+
+std::string report_schema() {
+  Json schema = object_of(kReportKeys);
+  Json& properties = schema["properties"];
+  // A measure that a format cannot tell is null, not left out.
+  for (const char* key : {"volume_expected", "volume_error", "min_chunk_volume"}) {
+    properties[key]["type"] = {"number", "null"};
+  }
+  properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
+  properties["time"] = {{"type", "object"},
+                        {"description", "What each step took, keys end in _s. Unit: s."}};
+  fill(properties["time"], seconds());
+  properties["skipped"] = {{"type", "object"},
+                           {"description", "What was not done because nothing needed it."}};
+  schema["required"] = {"sound", "chunks", "triangles", "volume", "hash"};
+  return text_of("sunder report of fracture and check", schema);
+}
+
+std::string impact_report_schema() {
+  Json schema = object_of(kImpactKeys);
+  Json& properties = schema["properties"];
+  const Json number{{"type", "number"}}, count{{"type", "integer"}, {"minimum", 0}};
+  const Json point = list_of(3, number);
+  fill(properties["step_ms"], object_of(kStepKeys));
+  fill(properties["broken_joints"], list_of({{"type", "object"}}));
+  fill(properties["freed"], object_of(kFreedKeys));
+  fill(properties["freed"]["properties"]["by_decade"], list_of(6, count));
+  fill(properties["reactions"], object_of(kReactionKeys));
+  fill(properties["reactions"]["properties"]["impulse"], point);
+  fill(properties["energy"], object_of(kEnergyKeys));
+  Json projectile = object_of(kProjectileKeys), event = object_of(kBreakKeys);
+  fill(event["properties"]["point"], point);
+  fill(properties["projectiles"], list_of(std::move(projectile)));
+  fill(properties["breaks"], list_of(std::move(event)));
+  fill(properties["solves"], object_of(kSolveKeys));
+  properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
+  fill(properties["skipped"], object_of(kSkippedKeys));
+  fill(properties["warnings"], list_of({{"type", "string"}}));
+  fill(properties["time"], seconds());
+  return text_of("sunder report of impact", schema);
+}
+
+}  // namespace sunder

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "io/strip_camera.hpp"
+#include "io/strip_paper.hpp"
+#include "io/strip_svg.hpp"
+#include "sim/recording.hpp"
+
+namespace sunder {
+
+/// A convex part of a chunk; a convex chunk is its own only part.
+struct StripPart {
+  static constexpr std::uint32_t kBorder = UINT32_MAX, kInside = UINT32_MAX - 1;
+  std::uint32_t wall = 0, chunk = 0;
+  std::vector<Vec2> outline;          ///< m, wall frame, counter-clockwise
+  std::vector<std::uint32_t> across;  ///< per edge: a chunk, kBorder, or kInside of its own chunk
+};
+std::vector<StripPart> strip_parts(const Recording& recording);
+
+/// What all pictures of a strip share.
+struct StripScene {
+  const Recording& recording;
+  StripParams params;
+  std::vector<StripPart> parts;
+  StripCamera camera;
+};
+
+/// Gradients, filters and the empty scenery, inside a <defs>.
+void draw_strip_defs(const StripScene& scene, StripPaper& paper);
+
+}  // namespace sunder

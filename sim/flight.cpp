@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Projectiles on their way: when they meet the ground or a wall's face, in closed form. A substep
+// ends there, so that bounce and breaking happen at the place and speed of the contact, whatever
+// the step; what touches edges, debris or rests is the contact solver's.
+#include <algorithm>
+#include <cmath>
+
+#include "meshing/error.hpp"
+#include "sim/impact_run.hpp"
+
+namespace sunder {
+namespace {
+
+/// Keys of the contact order: projectiles, then colliders, then bodies.
+constexpr std::uint64_t kShots = std::uint64_t{1} << 60;
+constexpr std::uint64_t kColliders = std::uint64_t{2} << 60;
+
+/// A body counts as fast when it covers more than this share of its own size in a substep, at a
+/// max_error of 0.01.
+constexpr double kStepShare = 0.5;
+
+/// Time until s = u t + a t²/2, s >= 0; infinity if never.
+double time_to(double s, double u, double a) {
+  const double root = u * u + 2 * a * s;
+  if (root < 0) return std::numeric_limits<double>::infinity();
+  const double sum = u + std::sqrt(root);
+  return sum > 0 ? 2 * s / sum : std::numeric_limits<double>::infinity();
+}
+
+double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 edge = b - a;
+  const double t = std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
+  return length(p - (a + t * edge));
+}
+
+}  // namespace
+
+double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point) {
+  double least = std::numeric_limits<double>::infinity();
+  bool inside = false;
+  for (const LoopRange loop : loops_of(pattern, cell))
+    for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
+      const Vec2 a = pattern.vertices[pattern.corners[k]];
+      const Vec2 b = pattern.vertices[pattern.corners[loop.next(k)]];
+      least = std::min(least, distance_to_segment(point, a, b));
+      if ((a.y > point.y) != (b.y > point.y))
+        inside ^= (cross(b - a, point - a) > 0) == (b.y > a.y);
+    }
+  return inside ? 0 : least;
+}
+
+void ImpactRun::launch(std::uint32_t index) {
+  Shot& shot = shots_[index];
+  const Projectile& p = shot.projectile;
+  refuse_overlap(shot);
+  BodyParams body;
+  body.mass = p.mass;
+  const double inertia = 0.4 * p.mass * p.radius * p.radius;
+  body.inertia = {inertia, inertia, inertia, 0, 0, 0};
+  body.pose.position = p.position;
+  body.velocity = p.velocity;
+  body.surface = {p.friction, p.restitution};
+  body.order = kShots + index;
+  shot.body = world_.add_sphere(body, p.radius);
+  own(shot.body, {Owner::Kind::projectile, index, 0});
+  masses_.resize(std::max<std::size_t>(masses_.size(), shot.body + 1));
+  masses_[shot.body] = p.mass;
+  shot.track = recorder_.add_track(kNoTrack);
+  recorder_.add_pose(shot.track, body.pose);
+  result_.energy_in += 0.5 * p.mass * dot(p.velocity, p.velocity);
+  baseline_ += p.mass * scene_.simulation.gravity * p.position.y;
+}
+
+void ImpactRun::refuse_overlap(const Shot& shot) const {
+  const Projectile& p = shot.projectile;
+  const auto fail = [&](const std::string& where) {
+    throw Error(ErrorCode::input, "projectile \"" + p.name + "\" starts " + where +
+                                      "; move its position or change its radius");
+  };
+  const SimulationParams& simulation = scene_.simulation;
+  if (simulation.ground && p.position.y - p.radius < simulation.ground_height)
+    fail("below the ground (y = " + std::to_string(simulation.ground_height) + " m)");
+  for (std::uint32_t w = 0; w < walls_.size(); ++w) {
+    const WallState& wall = walls_[w];
+    const Vec3 local = inverse(pose_of(islands_[w])) * p.position;
+    const double beyond = std::max(std::abs(local.z) - wall.half_thickness, 0.0);
+    if (beyond >= p.radius) continue;
+    const double reach = std::sqrt(p.radius * p.radius - beyond * beyond);
+    const Vec2 at{local.x, local.y}, half{reach, reach};
+    for (const std::uint32_t cell : wall.bins.cells_in(at - half, at + half))
+      if (wall.chunks[wall.chunk_of_cell[cell]].island == w &&
+          distance_to_cell(wall.asset.pattern, cell, at) < reach)
+        fail("inside wall \"" + wall.asset.wall.name + "\"");
+  }
+}
+
+namespace {
+
+double gap_between(const RigidWorld::Bounds& a, Vec3 low, Vec3 high) {
+  return length(Vec3{std::max({low.x - a.high.x, a.low.x - high.x, 0.0}),
+                     std::max({low.y - a.high.y, a.low.y - high.y, 0.0}),
+                     std::max({low.z - a.high.z, a.low.z - high.z, 0.0})});
+}
+
+}  // namespace
+
+// The longest substep in which nothing could pass through something else: a projectile near
+// anything covers a share of its radius at most, debris near a wall of the wall's thickness. The
+// ground has no other side.
+double ImpactRun::distance_limit(double dt) const {
+  const double share =
+      kStepShare * std::clamp(std::sqrt(scene_.simulation.max_error / 0.01), 0.1, 1.0);
+  double limit = dt;
+  const auto keep_to = [&](double speed, double size, double nearest) {
+    if (speed * limit > share * size)
+      limit = std::min(limit, std::max(share * size, 0.5 * nearest) / speed);
+  };
+  const auto nearest_wall = [&](const RigidWorld::Bounds& bounds, double* thickness) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const WallState& wall : walls_) {
+      const double gap = gap_between(bounds, wall.low, wall.high);
+      if (gap >= nearest) continue;
+      nearest = gap;
+      *thickness = 2 * wall.half_thickness;
+    }
+    return nearest;
+  };
+  for (const std::uint32_t i : live_) {
+    if (!world_.is_awake(islands_[i].body)) continue;
+    const double speed = length(world_.velocity(islands_[i].body));
+    if (speed * limit <= share * least_thickness_) continue;
+    double thickness = 0;
+    const double nearest = nearest_wall(world_.bounds(islands_[i].body), &thickness);
+    keep_to(speed, std::max(thickness, 2 * walls_[islands_[i].wall].half_thickness), nearest);
+  }
+  for (const Shot& shot : shots_) {
+    if (shot.body == kNoBody || !world_.is_awake(shot.body)) continue;
+    const double speed = length(world_.velocity(shot.body)), radius = shot.projectile.radius;
+    if (speed * limit <= share * radius) continue;
+    const RigidWorld::Bounds bounds = world_.bounds(shot.body);
+    double thickness = 0, nearest = nearest_wall(bounds, &thickness);
+    for (const std::uint32_t i : live_) {
+      const RigidWorld::Bounds other = world_.bounds(islands_[i].body);
+      nearest = std::min(nearest, gap_between(bounds, other.low, other.high));
+    }
+    for (const Shot& other : shots_)
+      if (&other != &shot && other.body != kNoBody) {
+        const RigidWorld::Bounds b = world_.bounds(other.body);
+        nearest = std::min(nearest, gap_between(bounds, b.low, b.high));
+      }
+    keep_to(speed, radius, nearest);
+  }
+  return limit;
+}
+
+void ImpactRun::raise_colliders(double dt) {
+  const auto near = [&](BodyId body) {
+    if (!world_.is_awake(body)) return;
+    const RigidWorld::Bounds b = world_.bounds(body);
+    const double speed = length(world_.velocity(body));
+    // What a contact may add to its speed in this substep stays below this.
+    const double margin = 0.05 + (speed + scene_.simulation.gravity * dt) * dt;
+    const Vec3 m{margin, margin, margin};
+    for (std::uint32_t w = 0; w < walls_.size(); ++w) {
+      const WallState& wall = walls_[w];
+      if (islands_[w].body != kNoBody) continue;
+      const Vec3 low = b.low - m, high = b.high + m;
+      if (low.x > wall.high.x || low.y > wall.high.y || low.z > wall.high.z ||
+          high.x < wall.low.x || high.y < wall.low.y || high.z < wall.low.z)
+        continue;
+      raise_colliders_near(w, low, high);
+    }
+  };
+  if (!params_.skip) return;
+  for (const Shot& shot : shots_)
+    if (shot.body != kNoBody) near(shot.body);
+  for (const std::uint32_t i : live_) near(islands_[i].body);
+}
+
+// Colliders of standing chunks in a world box; of all when nothing is to be skipped.
+void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
+  if (islands_[w].body != kNoBody) return;
+  const WallState& wall = walls_[w];
+  if (!params_.skip) {
+    for (const std::uint32_t chunk : std::vector(islands_[w].chunks)) raise_collider(w, chunk);
+    return;
+  }
+  Vec3 from{1e300, 1e300, 1e300}, to{-1e300, -1e300, -1e300};
+  const Pose back = inverse(wall.standing);
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 p = back * Vec3{i & 1 ? low.x : high.x, i & 2 ? low.y : high.y,
+                               i & 4 ? low.z : high.z};
+    from = {std::min(from.x, p.x), std::min(from.y, p.y), std::min(from.z, p.z)};
+    to = {std::max(to.x, p.x), std::max(to.y, p.y), std::max(to.z, p.z)};
+  }
+  if (from.z > wall.half_thickness || to.z < -wall.half_thickness) return;
+  for (const std::uint32_t cell : wall.bins.cells_in({from.x, from.y}, {to.x, to.y}))
+    raise_collider(w, wall.chunk_of_cell[cell]);
+}
+
+void ImpactRun::raise_collider(std::uint32_t w, std::uint32_t chunk) {
+  ChunkState& state = walls_[w].chunks[chunk];
+  if (state.collider != kNoBody || state.island != w) return;
+  const std::uint64_t order = kColliders + (std::uint64_t{w} << 32) + chunk;
+  state.collider =
+      world_.add_static(walls_[w].standing, walls_[w].prisms(chunk), walls_[w].surface(), order);
+  own(state.collider, {Owner::Kind::collider, w, chunk});
+}
+
+std::optional<ImpactRun::Arrival> ImpactRun::next_arrival(double dt) const {
+  std::optional<Arrival> first;
+  const auto consider = [&](std::optional<Arrival> arrival) {
+    if (arrival && (!first || arrival->time < first->time)) first = arrival;
+  };
+  for (std::uint32_t s = 0; s < shots_.size(); ++s) {
+    if (shots_[s].body == kNoBody || !world_.is_awake(shots_[s].body)) continue;
+    consider(arrival_at_ground(s, dt));
+    for (std::uint32_t w = 0; w < walls_.size(); ++w) consider(arrival_at_wall(s, w, dt));
+  }
+  return first;
+}
+
+// Slower contacts are the solver's: it stops them, as resting things need it.
+double ImpactRun::least_arrival_speed() const {
+  return 0.05 + 2 * scene_.simulation.gravity * scene_.simulation.step;
+}
+
+std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_ground(std::uint32_t s, double dt) const {
+  const SimulationParams& simulation = scene_.simulation;
+  if (!simulation.ground) return {};
+  const Shot& shot = shots_[s];
+  const Vec3 centre = world_.centre(shot.body);
+  const double gap = centre.y - shot.projectile.radius - simulation.ground_height;
+  const double speed = -world_.velocity(shot.body).y, g = simulation.gravity;
+  // The solver takes the speed at a substep's end for the whole of it: leave it that much room.
+  const double room = std::max(gap - 0.5 * g * dt * dt, 0.0);
+  const double time = time_to(room, speed, g);
+  if (!(time <= dt) || !(speed + g * time > least_arrival_speed())) return {};
+  const double height = simulation.ground_height;
+  return Arrival{time, s, kNoIsland, {centre.x, height, centre.z}, {0, 1, 0}};
+}
+
+std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_wall(std::uint32_t s, std::uint32_t w,
+                                                             double dt) const {
+  const Shot& shot = shots_[s];
+  const WallState& wall = walls_[w];
+  const Island& island = islands_[w];
+  const Pose pose = pose_of(island);
+  const Vec3 centre = world_.centre(shot.body);
+  const Vec3 drift = island.body == kNoBody ? Vec3{} : world_.velocity_at(island.body, centre);
+  const Quaternion back = conjugate(pose.rotation);
+  const Vec3 p = inverse(pose) * centre;
+  const Vec3 v = rotate(back, world_.velocity(shot.body) - drift);
+  const Vec3 g = rotate(back, {0, -scene_.simulation.gravity, 0});
+  const double side = p.z > 0 ? 1 : -1;
+  const double gap = side * p.z - wall.half_thickness - shot.projectile.radius;
+  const double speed = -side * v.z, gain = -side * g.z;
+  if (gap < -0.5 * shot.projectile.radius) return {};  // in a hole
+  const double room = std::max(gap - 0.5 * std::abs(gain) * dt * dt, 0.0);
+  const double time = time_to(room, speed, gain);
+  if (!(time <= dt) || !(speed + gain * time > least_arrival_speed())) return {};
+  const Vec2 at{p.x + v.x * time + 0.5 * g.x * time * time,
+                p.y + v.y * time + 0.5 * g.y * time * time};
+  const std::uint32_t cell = wall.bins.cell_at(wall.asset.pattern, at);
+  if (cell == kNoCell || wall.chunks[wall.chunk_of_cell[cell]].island != w) return {};
+  return Arrival{time, s, w, pose * Vec3{at.x, at.y, side * wall.half_thickness},
+                 rotate(pose.rotation, {0, 0, side})};
+}
+
+void ImpactRun::arrive(const Arrival& arrival) {
+  const Shot& shot = shots_[arrival.shot];
+  Vec3 relative = world_.velocity(shot.body);
+  if (arrival.island != kNoIsland && islands_[arrival.island].body != kNoBody)
+    relative = relative - world_.velocity_at(islands_[arrival.island].body, arrival.point);
+  const double speed = -dot(relative, arrival.normal);
+  if (!(speed > 0)) return;  // something else stopped it on the way
+  if (arrival.island == kNoIsland) {
+    bounce({shot.body, kNoIsland, arrival.point, arrival.normal, speed, false}, kNoBody,
+           ground_surface());
+    return;
+  }
+  strike({shot.body, arrival.island, arrival.point, arrival.normal, speed, false});
+}
+
+Surface ImpactRun::ground_surface() const {
+  return WorldParams{}.ground;
+}
+
+// Closed form: normal impulse by restitution, tangential one by Coulomb until it no longer slides.
+void ImpactRun::bounce(const Meeting& m, BodyId other, const Surface& surface) {
+  const Owner& who = owner(m.striker);
+  const Projectile& p = shots_[who.index].projectile;
+  const double e = std::sqrt(p.restitution * surface.restitution);
+  const double mu = std::sqrt(p.friction * surface.friction);
+  const auto relative = [&] {
+    const Vec3 v = world_.velocity_at(m.striker, m.point);
+    return other == kNoBody ? v : v - world_.velocity_at(other, m.point);
+  };
+  const auto inverse_mass = [&](Vec3 direction) {
+    return world_.inverse_mass_at(m.striker, m.point, direction) +
+           (other == kNoBody ? 0 : world_.inverse_mass_at(other, m.point, direction));
+  };
+  const auto push = [&](Vec3 impulse) {
+    world_.apply_impulse(m.striker, impulse, m.point);
+    if (other == kNoBody) impulse_ = impulse_ + impulse;
+    else world_.apply_impulse(other, -1.0 * impulse, m.point);
+  };
+  const double before = world_.kinetic_energy();
+  const double normal_impulse = (1 + e) * m.speed / inverse_mass(m.normal);
+  push(normal_impulse * m.normal);
+  const double between = world_.kinetic_energy();
+  result_.energy.contact += before - between;
+  const Vec3 v = relative();
+  const Vec3 sliding = v - dot(v, m.normal) * m.normal;
+  const double slip = length(sliding);
+  if (slip < 1e-9) return;
+  const Vec3 along = (1 / slip) * sliding;
+  const double stops = slip / inverse_mass(along);
+  push(-std::min(mu * normal_impulse, stops) * along);
+  result_.energy.friction += between - world_.kinetic_energy();
+}
+
+}  // namespace sunder

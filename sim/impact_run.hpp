@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/blow.hpp"
+#include "sim/impact.hpp"
+#include "sim/recorder.hpp"
+#include "sim/rigid_world.hpp"
+#include "sim/wall_state.hpp"
+
+namespace sunder {
+
+struct SpeedProfile;
+
+/// Distance of a point from a cell, 0 inside, m.
+double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point);
+
+/// One run of an impact test. The state of the world is in RigidWorld (poses, velocities), what
+/// hangs together in `islands_`; this class moves time on and lets things break.
+class ImpactRun {
+ public:
+  ImpactRun(const ImpactScene& scene, const ImpactParams& params);
+  ImpactResult run();
+
+ private:
+  /// What a body of the world is.
+  struct Owner {
+    enum class Kind : std::uint8_t { none, ground, collider, island, projectile };
+    Kind kind = Kind::none;
+    std::uint32_t index = 0;  ///< wall (collider), island, projectile
+    std::uint32_t chunk = 0;  ///< of a collider
+  };
+  struct Shot {
+    Projectile projectile;
+    BodyId body = kNoBody;
+    std::uint32_t track = kNoTrack;
+    std::uint32_t wall = kNoIsland;  ///< that it hit first
+    double side = 0;                 ///< of that wall where it came from, ±1
+  };
+  /// First contact of a projectile with the ground or a wall's face within a substep.
+  struct Arrival {
+    double time = 0;  ///< from now, s
+    std::uint32_t shot = 0;
+    std::uint32_t island = kNoIsland;  ///< kNoIsland: the ground
+    Vec3 point, normal;                ///< world; normal points to the projectile
+  };
+  /// Two things came together.
+  struct Meeting {
+    BodyId striker = kNoBody;
+    std::uint32_t island = kNoIsland;  ///< what is struck
+    Vec3 point, normal;                ///< world; normal points to the striker
+    double speed = 0;                  ///< of approach
+    bool solved = false;               ///< the contact solver has answered it already
+  };
+  /// How an island answers: out of its plane (a plate bends) or in it (an edge is hit).
+  struct Answer {
+    Blow blow;
+    bool in_plane = false;
+    Vec2 centre;  ///< contact in the wall's frame
+    double front = 1;  ///< side of the contact, ±1 along the wall's z
+    Striker striker;
+  };
+  struct Crack {
+    std::uint32_t bond = 0;  ///< of the island
+    double utilisation = 0;
+  };
+  /// What breaking bonds did.
+  struct Freed {
+    std::vector<std::uint32_t> islands;
+    std::uint32_t bonds = 0, chunks = 0;
+    double driven_area = 0;  ///< of the cracks that the blow drove, m²
+    bool rest_is_gone = false;
+  };
+  /// Rigid motion of a wall's frame.
+  struct Motion {
+    Pose pose;
+    Vec3 centre, velocity, angular_velocity;  ///< velocity of the point `centre`
+  };
+
+  // impact.cpp: set-up, time, outcome.
+  void add_walls();
+  void step_once(double end);
+  double next_substep(double left);
+  void record(double time);
+  void watch_projectiles();
+  ImpactResult outcome();
+  const Owner& owner(BodyId body) const { return owners_[body]; }
+  void own(BodyId body, Owner owner);
+  Pose pose_of(const Island& island) const;
+  void advance(double dt);
+  void note_energy();
+  double largest_energy_scale() const;
+
+  // flight.cpp: projectiles until something is in their way.
+  void launch(std::uint32_t shot);
+  void refuse_overlap(const Shot& shot) const;
+  double distance_limit(double dt) const;
+  void raise_colliders(double dt);
+  void raise_colliders_near(std::uint32_t wall, Vec3 low, Vec3 high);
+  void raise_collider(std::uint32_t wall, std::uint32_t chunk);
+  std::optional<Arrival> next_arrival(double dt) const;
+  std::optional<Arrival> arrival_at_ground(std::uint32_t shot, double dt) const;
+  std::optional<Arrival> arrival_at_wall(std::uint32_t shot, std::uint32_t wall, double dt) const;
+  void arrive(const Arrival& arrival);
+  /// A projectile bounces off something solid (kNoBody) or off a body.
+  void bounce(const Meeting& meeting, BodyId other, const Surface& surface);
+  Surface ground_surface() const;
+  double least_arrival_speed() const;
+
+  // strike.cpp: what breaks.
+  void strike(const Meeting& meeting);
+  Answer answer_to(const Meeting& meeting) const;
+  Striker striker_of(const Meeting& meeting) const;
+  double utilisation(const Answer& answer, double distance, const WallState& wall) const;
+  void note_hit(const Meeting& meeting, const Answer& answer);
+  std::vector<Crack> cracks(const Island& island, const Answer& answer, double footprint,
+                            double budget) const;
+  void weave_web(std::uint32_t island, const Answer& answer, double footprint, double speed,
+                 double budget);
+  void go_through(const Meeting& meeting, const Answer& answer);
+  bool hand_over(const Meeting& meeting, const Answer& answer, const Freed& freed, double mass,
+                 double footprint);
+  void push_island(std::uint32_t island, const SpeedProfile& profile, double speed, Vec3 along);
+  void add_all_bonds(std::uint32_t island, std::vector<Crack>& broken) const;
+  void meet_contacts();
+  void meet(BodyId struck, BodyId striker, Vec3 normal, Meeting meeting);
+  bool is_gentle(const Meeting& meeting) const;
+  double restitution_of(BodyId body) const;
+  void break_in_contact(const Meeting& meeting, double loss);
+  void split_chunk(const Meeting& meeting, double loss);
+
+  // islands.cpp: what hangs together, and the bodies it moves as.
+  Freed break_bonds(std::uint32_t island, std::span<const Crack> cracks, std::size_t driven);
+  void note_broken(std::uint32_t island, const Bond& bond);
+  Motion motion_of(const Island& island) const;
+  std::uint32_t detach(std::uint32_t from, std::span<const std::uint32_t> locals,
+                       const Motion& motion);
+  std::vector<Bond> intact_bonds(const Island& island,
+                                 std::span<const std::uint32_t> locals) const;
+  bool keep_rest(std::uint32_t island, const Motion& motion);
+  std::uint32_t free_island(std::uint32_t wall, std::vector<std::uint32_t> members,
+                            std::span<const Bond> bonds);
+  void add_body_of(std::uint32_t island, const Motion& motion);
+  void lower_collider(std::uint32_t wall, std::uint32_t chunk);
+
+  const ImpactScene& scene_;
+  const ImpactParams& params_;
+  RigidWorld world_;
+  std::vector<WallState> walls_;
+  std::vector<Island> islands_;  ///< the first ones are the walls'
+  std::vector<Shot> shots_;
+  std::vector<Owner> owners_;    ///< by BodyId
+  std::vector<std::uint32_t> live_;  ///< islands with a body
+  Recorder recorder_;
+  ImpactResult result_;
+  double now_ = 0;
+  double least_thickness_ = 0;   ///< of all walls, m
+  std::uint64_t serial_ = 0;     ///< of bodies, for their order
+  double baseline_ = 0;          ///< potential energy of all bodies where they started, J
+  Vec3 impulse_;                 ///< that ground and anchors gave, N s
+  double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
+  std::vector<double> masses_;   ///< by BodyId, kg
+  /// Per wall: pairs of standing chunks whose bond broke, ascending.
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> broken_pairs_;
+  std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
+};
+
+}  // namespace sunder

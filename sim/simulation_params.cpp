@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/simulation_params.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr std::string_view kSolvers[] = {"hybrid", "bullet"};
+
+}  // namespace
+
+template <>
+std::span<const Field<SimulationParams>> fields() {
+  using P = SimulationParams;
+  static const Field<P> table[] = {
+      {"duration", &P::duration, "s", "Time to simulate.", {0, 3600, true}},
+      {"step",
+       &P::step,
+       "s",
+       "Between recorded poses; divided further where something moves fast. At most 10 million "
+       "steps make the duration.",
+       {1e-6, 0.1}},
+      {"iterations", &P::iterations, "", "Of the contact solver, per step.", {1, 10000}},
+      {"max_error",
+       &P::max_error,
+       "",
+       "Relative error asked for; decides how far steps are divided.",
+       {0, 1, true}},
+      {"gravity", &P::gravity, "m/s²", "Downwards, along -y.", {0, 1000}},
+      {"ground", &P::ground, "", "Whether there is a floor to fall on."},
+      {"ground_height", &P::ground_height, "m", "The floor's y.", {-1e6, 1e6}},
+      {"break_depth",
+       &P::break_depth,
+       "",
+       "How often a chunk that came free may break again; 0: never.",
+       {0, 4}},
+      {"sleep", &P::sleep, "",
+       "Whether bodies at rest leave the solver until something wakes them."},
+      {.name = "solver",
+       .member = &P::solver,
+       .unit = "",
+       .effect =
+           "For buildings: hybrid carries intact parts by a static solver, bullet moves every "
+           "member as a rigid body.",
+       .choices = kSolvers},
+  };
+  return table;
+}
+
+}  // namespace sunder

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What breaks when two things meet. Demand and capacity of every bond follow from the blow
+// (sim/blow.hpp); the speed behind a hole from Recht and Ipson; momentum is handed over exactly,
+// and the energy of new cracks comes out of what the striker lost.
+#include <algorithm>
+#include <cmath>
+
+#include "fracture/local_web.hpp"
+#include "meshing/elementary.hpp"
+#include "meshing/random.hpp"
+#include "sim/edge_blow.hpp"
+#include "sim/impact_run.hpp"
+
+namespace sunder {
+namespace {
+
+/// A contact's normal that leans more than this from the wall's is one in its plane.
+constexpr double kFaceContact = 0.7;
+/// Slower contacts are not looked at, m/s.
+constexpr double kLeastSpeed = 0.5;
+constexpr double kGroundModulus = 30e9;  // Pa, concrete
+/// Bonds of islands up to this size are looked at one by one, of larger ones by place.
+constexpr std::size_t kSmallIsland = 256;
+constexpr std::uint32_t kMostRadial = 48;
+/// What takes longer to leave its hole is held by its neighbours, s.
+constexpr double kLongestExit = 0.15;
+
+bool has_higher_utilisation(double a, std::uint32_t i, double b, std::uint32_t j) {
+  return a != b ? a > b : i < j;
+}
+
+}  // namespace
+
+Striker ImpactRun::striker_of(const Meeting& m) const {
+  const Owner& who = owner(m.striker);
+  const Island& struck = islands_[m.island];
+  const WallState& wall = walls_[struck.wall];
+  const double yields =
+      struck.body == kNoBody ? 0 : world_.inverse_mass_at(struck.body, m.point, m.normal);
+  const bool fixed = who.kind == Owner::Kind::ground || who.kind == Owner::Kind::collider;
+  const double moves = fixed ? 0 : world_.inverse_mass_at(m.striker, m.point, m.normal);
+  Striker striker;
+  // What counts in a collision is the reduced mass.
+  striker.mass = 1 / (moves + yields);
+  switch (who.kind) {
+    case Owner::Kind::projectile: {
+      const Projectile& p = shots_[who.index].projectile;
+      striker.radius = p.radius;
+      striker.youngs_modulus = p.youngs_modulus;
+      striker.poisson_ratio = p.poisson_ratio;
+      break;
+    }
+    case Owner::Kind::island: {
+      const WallState& other = walls_[islands_[who.index].wall];
+      striker.radius = other.half_thickness;
+      striker.youngs_modulus = other.material.youngs_modulus;
+      striker.poisson_ratio = other.material.poisson_ratio;
+      break;
+    }
+    default:
+      striker.radius = wall.half_thickness;
+      striker.youngs_modulus = kGroundModulus;
+      striker.poisson_ratio = 0.2;
+  }
+  if (!(striker.youngs_modulus > 0)) striker.youngs_modulus = kGroundModulus;
+  return striker;
+}
+
+ImpactRun::Answer ImpactRun::answer_to(const Meeting& m) const {
+  const Island& island = islands_[m.island];
+  const WallState& wall = walls_[island.wall];
+  const Pose back = inverse(pose_of(island));
+  const Vec3 at = back * m.point, normal = rotate(back.rotation, m.normal);
+  Answer answer;
+  answer.centre = {at.x, at.y};
+  answer.front = normal.z > 0 ? 1 : -1;
+  answer.in_plane = std::abs(normal.z) < kFaceContact;
+  answer.striker = striker_of(m);
+  const double thickness = 2 * wall.half_thickness;
+  answer.blow = answer.in_plane
+                    ? edge_blow_of(answer.striker, m.speed, thickness, wall.material)
+                    : blow_of(answer.striker, m.speed, thickness, wall.material);
+  return answer;
+}
+
+double ImpactRun::utilisation(const Answer& answer, double distance,
+                              const WallState& wall) const {
+  const double thickness = 2 * wall.half_thickness;
+  if (answer.in_plane)
+    return edge_utilisation_at(answer.blow, distance, thickness, wall.material);
+  if (answer.blow.is_global)
+    return utilisation_at(answer.blow, distance, thickness, wall.material);
+  return 0;
+}
+
+void ImpactRun::note_hit(const Meeting& m, const Answer& answer) {
+  result_.max_utilisation = std::max(result_.max_utilisation, answer.blow.utilisation);
+  const Owner& who = owner(m.striker);
+  if (who.kind != Owner::Kind::projectile || result_.projectiles[who.index].hit) return;
+  ProjectileOutcome& outcome = result_.projectiles[who.index];
+  outcome.hit = true;
+  outcome.speed_before = m.solved ? m.speed : length(world_.velocity(m.striker));
+  outcome.ballistic_speed = answer.blow.ballistic_speed;
+  outcome.contact_force = answer.blow.force;
+  shots_[who.index].wall = islands_[m.island].wall;
+  shots_[who.index].side = answer.front;
+}
+
+void ImpactRun::strike(const Meeting& m) {
+  const Answer answer = answer_to(m);
+  const Island& island = islands_[m.island];
+  walls_[island.wall].touched = true;
+  note_hit(m, answer);
+  if (m.speed > answer.blow.ballistic_speed && answer.blow.utilisation > 1) {
+    go_through(m, answer);
+  } else if (!m.solved) {
+    bounce(m, island.body, walls_[island.wall].surface());
+  }
+}
+
+// Bonds that the blow over-stresses, most over-stressed first, as far as the energy lasts. What lies
+// in the footprint is sheared out whatever its bonds' distance.
+std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answer& answer,
+                                                double footprint, double budget) const {
+  const WallState& wall = walls_[island.wall];
+  const SupportGraph& graph = *island.graph;
+  const double reach = std::max(answer.blow.crack_radius, footprint);
+  std::vector<Crack> found;
+  const auto look_at = [&](std::uint32_t bond, bool sheared) {
+    if (!graph.is_intact(bond)) return;
+    const Vec3 c = island.bonds[bond].centroid;
+    const double distance = length(Vec2{c.x, c.y} - answer.centre);
+    const double own = distance < reach ? utilisation(answer, distance, wall) : 0;
+    const double used = sheared ? std::max(own, answer.blow.utilisation) : own;
+    if (used > 1) found.push_back({bond, used});
+  };
+  const auto look_at_chunk = [&](std::uint32_t local) {
+    const ChunkState& chunk = wall.chunks[island.chunks[local]];
+    const bool woven = std::ranges::binary_search(woven_, island.chunks[local]);
+    const bool sheared = woven || (chunk.cell != kNoCell && footprint > 0 &&
+                                   distance_to_cell(wall.asset.pattern, chunk.cell,
+                                                    answer.centre) < footprint);
+    for (const std::uint32_t bond : graph.bonds_of(local)) look_at(bond, sheared);
+  };
+  if (island.chunks.size() <= kSmallIsland) {
+    for (std::uint32_t local = 0; local < island.chunks.size(); ++local)
+      if (graph.is_present(local)) look_at_chunk(local);
+  } else {
+    const Vec2 half{reach, reach};
+    for (const std::uint32_t cell :
+         wall.bins.cells_in(answer.centre - half, answer.centre + half)) {
+      const auto at = std::ranges::lower_bound(island.chunks, wall.chunk_of_cell[cell]);
+      if (at == island.chunks.end() || *at != wall.chunk_of_cell[cell]) continue;
+      const auto local = static_cast<std::uint32_t>(at - island.chunks.begin());
+      if (graph.is_present(local)) look_at_chunk(local);
+    }
+  }
+  std::ranges::sort(found, [](const Crack& a, const Crack& b) {
+    return has_higher_utilisation(a.utilisation, a.bond, b.utilisation, b.bond);
+  });
+  std::vector<Crack> kept;
+  for (const Crack& crack : found) {
+    if (!kept.empty() && kept.back().bond == crack.bond) continue;
+    if (std::ranges::any_of(kept, [&](const Crack& k) { return k.bond == crack.bond; })) continue;
+    budget -= wall.material.fracture_energy * island.bonds[crack.bond].area;
+    if (budget < 0) break;
+    kept.push_back(crack);
+  }
+  return kept;
+}
+
+// A glass-like wall gets its damage where it was hit: corners by the square root of the speed, size
+// by the reach of the bending stress, radial cracks no longer than the energy lasts.
+void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double footprint,
+                          double speed, double budget) {
+  WallState& wall = walls_[islands_[index].wall];
+  SpiderwebParams params = *wall.web();
+  const double thickness = 2 * wall.half_thickness;
+  const std::uint64_t seed = random_bits(scene_.seed, islands_[index].wall, wall.hits);
+  // Rounded up or down by chance, so that the mean over many hits is the law's.
+  const double expected = radial_crack_count(speed, thickness, wall.material);
+  const auto corners = static_cast<std::int64_t>(
+      std::clamp(std::floor(expected + random_unit(seed, 1)), 3.0, double{kMostRadial}));
+  params.min_points = params.max_points = corners;
+  params.max_radius = std::max(answer.blow.crack_radius, 1.25 * footprint);
+  params.min_radius = 0.7 * params.max_radius;
+  if (params.radial > 0) {
+    params.radial = corners;
+    const double energy_per_length =
+        static_cast<double>(corners) * thickness * wall.material.fracture_energy;
+    if (energy_per_length > 0)
+      params.reach = std::min(params.reach, 0.5 * budget / energy_per_length);
+    if (params.reach < 1.2 * params.max_radius) params.radial = 0;
+  }
+  std::vector<std::uint8_t> intact(wall.asset.pattern.cell_count());
+  for (std::uint32_t cell = 0; cell < intact.size(); ++cell)
+    intact[cell] = wall.chunks[wall.chunk_of_cell[cell]].island == index;
+  const std::uint32_t start = wall.bins.cell_at(wall.asset.pattern, answer.centre);
+  const LocalWeb web = local_web(wall.asset, intact, answer.centre, params, seed, start);
+  if (web.added.empty()) return;
+  Island& old = islands_[index];
+  for (const std::uint32_t cell : web.removed) {
+    ChunkState& chunk = wall.chunks[wall.chunk_of_cell[cell]];
+    if (chunk.collider == kNoBody) continue;
+    world_.remove(chunk.collider);
+    own(chunk.collider, {});
+    chunk.collider = kNoBody;
+  }
+  const std::vector<std::uint32_t> fresh = wall.replace(web.removed, web.new_vertices, web.added);
+  woven_.clear();
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    wall.chunks[fresh[i]].island = index;
+    if (web.is_damaged[i]) woven_.push_back(fresh[i]);
+  }
+  std::ranges::sort(woven_);
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t c = 0; c < wall.chunks.size(); ++c)
+    if (wall.chunks[c].island == index) members.push_back(c);
+  std::vector<Bond> bonds;
+  for (Bond bond : wall.asset.bonds) {
+    bond.a = wall.chunk_of_cell[bond.a];
+    if (bond.b != kWorld) bond.b = wall.chunk_of_cell[bond.b];
+    if (!std::ranges::binary_search(broken_pairs_[old.wall], std::pair(bond.a, bond.b)))
+      bonds.push_back(bond);
+  }
+  const std::uint32_t wall_index = old.wall, track = old.track;
+  const BodyId body = old.body;
+  islands_[index] = make_island(wall, wall_index, members, bonds_among(members, bonds));
+  islands_[index].body = body;
+  islands_[index].track = track;
+  if (!params_.skip && body == kNoBody)
+    for (const std::uint32_t chunk : fresh) raise_collider(wall_index, chunk);
+}
+
+// Share of the speed behind the hole that a chunk gets: all of it in the footprint, less in the
+// cone of 45° through which the wall's thickness spreads the load, none beyond: a cracked wall
+// passes no bending on.
+struct SpeedProfile {
+  Vec2 centre;
+  double footprint, thickness;
+  double at(double distance) const {
+    return std::clamp(1 - (distance - footprint) / thickness, 0.0, 1.0);
+  }
+  double of(const WallState& wall, std::uint32_t chunk) const {
+    const ChunkState& state = wall.chunks[chunk];
+    const double middle = at(length(Vec2{state.mass.centroid.x, state.mass.centroid.y} - centre));
+    if (state.cell == kNoCell) return middle;
+    return (middle + at(distance_to_cell(wall.asset.pattern, state.cell, centre))) / 2;
+  }
+};
+
+void ImpactRun::go_through(const Meeting& m, const Answer& answer) {
+  const std::uint32_t wall_index = islands_[m.island].wall;
+  const double mass = 1 / world_.inverse_mass_at(m.striker, m.point, m.normal);
+  const Material material = walls_[wall_index].material;
+  const double budget = 0.5 * mass * m.speed * m.speed;
+  const bool local = !answer.blow.is_global;
+  const double footprint = local ? answer.blow.crack_radius : answer.striker.radius;
+  const double energy_before = world_.kinetic_energy();
+  if (walls_[wall_index].web() && m.island < walls_.size() && !answer.in_plane)
+    weave_web(m.island, answer, footprint, m.speed, budget);
+  if (!islands_[m.island].graph) {
+    if (!m.solved) bounce(m, islands_[m.island].body, walls_[wall_index].surface());
+    return;
+  }
+  std::vector<Crack> broken = cracks(islands_[m.island], answer, footprint, budget);
+  const std::size_t driven = broken.size();
+  if (material.stored_energy > 0 && !broken.empty()) add_all_bonds(m.island, broken);
+  const Freed freed = break_bonds(m.island, broken, driven);
+  woven_.clear();
+  walls_[wall_index].hits += !broken.empty();
+  result_.energy.fracture += material.fracture_energy * freed.driven_area;
+  recorder_.add_event({now_, wall_index, m.point, m.speed, answer.blow.utilisation, freed.bonds,
+                       freed.chunks});
+  const bool passed = hand_over(m, answer, freed, mass, footprint);
+  result_.energy.contact += energy_before - world_.kinetic_energy() -
+                            material.fracture_energy * freed.driven_area;
+  if (!passed && !m.solved) bounce(m, islands_[m.island].body, walls_[wall_index].surface());
+}
+
+// Momentum from the striker to what came loose: everything in its way moves on with it. False when
+// nothing in its way came loose.
+bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& freed, double mass,
+                          double footprint) {
+  const WallState& wall = walls_[islands_[m.island].wall];
+  const double density = wall.material.density;
+  const SpeedProfile profile{answer.centre, footprint, 2 * wall.half_thickness};
+  double plug = 0, plug_energy = 0;  // Σ m φ, Σ m φ²
+  bool way_is_free = false;
+  for (const std::uint32_t i : freed.islands)
+    for (const std::uint32_t chunk : islands_[i].chunks) {
+      const double share = profile.of(wall, chunk);
+      const double chunk_mass = density * wall.chunks[chunk].mass.volume;
+      plug += chunk_mass * share;
+      plug_energy += chunk_mass * share * share;
+      way_is_free |= share > 0.5;
+    }
+  if (!way_is_free) return false;
+  double speed = residual_speed(mass, plug, m.speed, answer.blow.ballistic_speed);
+  // What is left after the cracks bounds the speed; the anchors only take momentum away.
+  const double crack_energy = wall.material.fracture_energy * freed.driven_area;
+  const double left = std::max(0.5 * mass * m.speed * m.speed - crack_energy, 0.0);
+  speed = std::min(speed, std::sqrt(2 * left / (mass + plug_energy)));
+  const Vec3 along = -1.0 * m.normal;
+  const Island& rest = islands_[m.island];
+  if (rest.body != kNoBody && !freed.rest_is_gone) {
+    // A free-standing wall takes at most what makes it as fast as the hole's edge.
+    const double rest_mass = 1 / world_.inverse_mass_at(rest.body, m.point, m.normal);
+    speed = std::max(speed, mass * m.speed / (mass + plug + rest_mass));
+    const double passed = std::max(mass * (m.speed - speed) - plug * speed, 0.0);
+    world_.apply_impulse(rest.body, passed * along, m.point);
+  } else {
+    speed = std::min(speed, mass * m.speed / (mass + plug));
+    impulse_ = impulse_ + (mass * (m.speed - speed) - plug * speed) * m.normal;
+  }
+  const double now = m.solved ? -dot(world_.velocity_at(m.striker, m.point), m.normal) : m.speed;
+  world_.apply_impulse(m.striker, mass * (now - speed) * m.normal, m.point);
+  for (const std::uint32_t i : freed.islands) push_island(i, profile, speed, along);
+  return true;
+}
+
+void ImpactRun::push_island(std::uint32_t index, const SpeedProfile& profile, double speed,
+                            Vec3 along) {
+  const Island& island = islands_[index];
+  const WallState& wall = walls_[island.wall];
+  const Pose pose = world_.pose(island.body);
+  double fastest = 0;
+  for (const std::uint32_t chunk : island.chunks) {
+    const double share = profile.of(wall, chunk);
+    if (share <= 0) continue;
+    const MassProperties& mass = wall.chunks[chunk].mass;
+    world_.apply_impulse(island.body, wall.material.density * mass.volume * share * speed * along,
+                         pose * mass.centroid);
+    fastest = std::max(fastest, share * speed);
+  }
+  const double leaves_in = 1.2 * 2 * wall.half_thickness / fastest;
+  if (fastest > 0 && leaves_in < kLongestExit) world_.exempt(island.body, leaves_in);
+}
+
+// Toughened glass: once it cracks, what toughening stored breaks the rest.
+void ImpactRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) const {
+  const Island& island = islands_[index];
+  std::vector<std::uint8_t> listed(island.bonds.size(), 0);
+  for (const Crack& crack : broken) listed[crack.bond] = 1;
+  for (std::uint32_t b = 0; b < island.bonds.size(); ++b)
+    if (!listed[b] && island.graph->is_intact(b) && island.bonds[b].b != kWorld)
+      broken.push_back({b, 1});
+  for (std::uint32_t b = 0; b < island.bonds.size(); ++b)
+    if (!listed[b] && island.graph->is_intact(b) && island.bonds[b].b == kWorld)
+      broken.push_back({b, 1});
+}
+
+// What the solver's contacts of the last step break: debris against walls, bodies against anything.
+void ImpactRun::meet_contacts() {
+  const std::vector<Contact> contacts(world_.contacts().begin(), world_.contacts().end());
+  for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
+    Meeting m;
+    double impulse = 0;
+    Vec3 point;
+    for (end = begin; end < contacts.size() && contacts[end].a == contacts[begin].a &&
+                      contacts[end].b == contacts[begin].b;
+         ++end) {
+      const double weight = contacts[end].impulse;
+      impulse += weight;
+      point = point + weight * contacts[end].point;
+      m.speed = std::max(m.speed, contacts[end].approach);
+    }
+    if (m.speed < kLeastSpeed || !(impulse > 0)) continue;
+    m.point = (1 / impulse) * point;
+    m.solved = true;
+    const Contact& first = contacts[begin];
+    meet(first.a, first.b, -1.0 * first.normal, m);
+    meet(first.b, first.a, first.normal, m);
+  }
+}
+
+// Most contacts break nothing: a first look at what they ask of the chunks they touch.
+bool ImpactRun::is_gentle(const Meeting& m) const {
+  const Island& island = islands_[m.island];
+  const WallState& wall = walls_[island.wall];
+  const Striker striker = striker_of(m);
+  const double thickness = 2 * wall.half_thickness;
+  const Vec3 normal = rotate(conjugate(pose_of(island).rotation), m.normal);
+  if (owner(m.striker).kind == Owner::Kind::projectile) return false;  // its first hit is noted
+  if (std::abs(normal.z) >= kFaceContact)
+    return !(utilisation_of(striker, m.speed, thickness, wall.material) > 1);
+  return !(edge_force_of(striker, m.speed, wall.material) >
+           least_edge_force(striker, thickness, wall.material));
+}
+
+/// `struck` is what may break; the normal points from it to the other.
+void ImpactRun::meet(BodyId struck, BodyId striker, Vec3 normal, Meeting m) {
+  const Owner what = owner(struck);
+  if (owner(striker).kind == Owner::Kind::none) return;  // broke a moment ago
+  m.striker = striker;
+  m.normal = normal;
+  if (what.kind == Owner::Kind::collider) {
+    m.island = what.index;
+    if (!is_gentle(m)) strike(m);
+  } else if (what.kind == Owner::Kind::island) {
+    m.island = what.index;
+    const double e = std::sqrt(walls_[islands_[m.island].wall].material.restitution *
+                               restitution_of(striker));
+    const double loss = 0.5 * striker_of(m).mass * m.speed * m.speed * (1 - e * e);
+    if (islands_[m.island].chunks.size() == 1) split_chunk(m, loss);
+    else if (!is_gentle(m)) break_in_contact(m, loss);
+  }
+}
+
+double ImpactRun::restitution_of(BodyId body) const {
+  const Owner& who = owner(body);
+  switch (who.kind) {
+    case Owner::Kind::projectile: return shots_[who.index].projectile.restitution;
+    case Owner::Kind::island: return walls_[islands_[who.index].wall].material.restitution;
+    case Owner::Kind::collider: return walls_[who.index].material.restitution;
+    default: return ground_surface().restitution;
+  }
+}
+
+void ImpactRun::break_in_contact(const Meeting& m, double loss) {
+  const Answer answer = answer_to(m);
+  walls_[islands_[m.island].wall].touched = true;
+  note_hit(m, answer);
+  if (!(answer.blow.utilisation > 1) || !islands_[m.island].graph) return;
+  const std::uint32_t wall = islands_[m.island].wall;
+  std::vector<Crack> broken = cracks(islands_[m.island], answer, 0, loss);
+  if (broken.empty()) return;
+  const std::size_t driven = broken.size();
+  if (walls_[wall].material.stored_energy > 0) add_all_bonds(m.island, broken);
+  const Freed freed = break_bonds(m.island, broken, driven);
+  const double energy = walls_[wall].material.fracture_energy * freed.driven_area;
+  result_.energy.fracture += energy;
+  result_.energy.contact -= energy;  // the solver counted it there
+  recorder_.add_event({now_, wall, m.point, m.speed, answer.blow.utilisation, freed.bonds,
+                       freed.chunks});
+}
+
+void ImpactRun::split_chunk(const Meeting& m, double loss) {
+  const std::uint32_t wall_index = islands_[m.island].wall;
+  WallState& wall = walls_[wall_index];
+  const std::uint32_t chunk = islands_[m.island].chunks.front();
+  if (wall.chunks[chunk].depth >= scene_.simulation.break_depth) return;
+  if (!(wall.material.tensile_strength > 0)) return;
+  const double thickness = 2 * wall.half_thickness, size = std::sqrt(wall.area(chunk));
+  const double used = edge_force_of(striker_of(m), m.speed, wall.material) /
+                      splitting_force(size, thickness, wall.material);
+  if (!(used > 1)) return;
+  const auto count = static_cast<std::uint32_t>(std::clamp(2 + used, 3.0, 6.0));
+  const double energy = wall.material.fracture_energy * 0.5 * count * size * thickness;
+  if (energy > loss) return;
+  const Vec3 c = wall.chunks[chunk].mass.centroid;
+  const Vec3 at = inverse(pose_of(islands_[m.island])) * m.point;
+  const Vec2 middle{0.5 * (c.x + at.x), 0.5 * (c.y + at.y)};
+  const std::vector<std::uint32_t> parts = wall.split(chunk, middle, count);
+  if (parts.empty()) return;
+  const Motion motion = motion_of(islands_[m.island]);
+  const std::uint32_t track = islands_[m.island].track;
+  world_.remove(islands_[m.island].body);
+  own(islands_[m.island].body, {});
+  std::erase(live_, m.island);
+  islands_[m.island].body = kNoBody;
+  for (const std::uint32_t part : parts) {
+    const std::uint32_t island = free_island(wall_index, {part}, {});
+    islands_[island].track = recorder_.add_track(track);
+    add_body_of(island, motion);
+  }
+  ++result_.chunks_split;
+  result_.max_utilisation = std::max(result_.max_utilisation, used);
+  result_.crack_area += 0.5 * count * size * thickness;
+  result_.energy.fracture += energy;
+  result_.energy.contact -= energy;
+  recorder_.add_event({now_, wall_index, m.point, m.speed, used, 0,
+                       static_cast<std::uint32_t>(parts.size())});
+}
+
+}  // namespace sunder

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "io/sample_asset.hpp"
+#include "io/sample_recording.hpp"
+#include "io/strip_camera.hpp"
+#include "io/strip_order.hpp"
+#include "io/strip_scene.hpp"
+#include "io/strip_svg.hpp"
+
+namespace sunder {
+namespace {
+
+Recording sample(std::uint64_t seed = 1) {
+  return sample_recording({sample_wall("facade", 12, 6, seed)}, {.hit = {3, 1.5}, .seed = seed});
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+TEST(StripSteps, BeginBeforeTheBreakAndGrowApart) {
+  const Recording recording = sample();
+  const std::vector<std::uint32_t> steps = strip_steps(recording, 6);
+  ASSERT_EQ(steps.size(), 6u);
+  std::uint32_t first = UINT32_MAX, last = 0;
+  for (const std::uint32_t track : recording.walls[0].track) {
+    if (track == kNoTrack) continue;
+    first = std::min(first, moving_range(recording, track).first);
+    last = std::max(last, moving_range(recording, track).end - 1);
+  }
+  EXPECT_EQ(steps.front(), first - 1);
+  EXPECT_LE(steps.back(), last);
+  for (std::size_t i = 2; i < steps.size(); ++i) {
+    EXPECT_GT(steps[i] - steps[i - 1], steps[i - 1] - steps[i - 2]);
+  }
+}
+
+TEST(StripSteps, AreEvenWhereNothingBreaksAndNeverTwiceTheSame) {
+  Recording recording = sample();
+  std::ranges::fill(recording.walls[0].track, kNoTrack);
+  EXPECT_EQ(
+      strip_steps(recording, 2),
+      (std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(recording.times.size()) - 1}));
+  Recording still;
+  still.times = {0};
+  still.walls = recording.walls;
+  EXPECT_EQ(strip_steps(still, 6), std::vector<std::uint32_t>{0});
+  EXPECT_EQ(strip_steps(sample(), 1).size(), 1u);
+}
+
+// Smallest distance along a ray at which it is inside a prism; none if it misses.
+std::optional<double> hit_of(const StripSolid& solid, Vec3 direction) {
+  const Vec3 d = rotate(conjugate(solid.pose.rotation), direction);
+  double enter = 0, leave = std::numeric_limits<double>::infinity();
+  const auto clip = [&](double height, double slope) {  // inside where height + t slope <= 0
+    if (slope == 0) {
+      if (height > 0) leave = -1;
+    } else if (slope < 0) {
+      enter = std::max(enter, -height / slope);
+    } else {
+      leave = std::min(leave, -height / slope);
+    }
+  };
+  clip(solid.eye.z - solid.half, d.z);
+  clip(-solid.eye.z - solid.half, -d.z);
+  for (std::size_t i = 0; i < solid.outline.size(); ++i) {
+    const Vec2 p = solid.outline[i], q = solid.outline[(i + 1) % solid.outline.size()];
+    const Vec2 n{q.y - p.y, p.x - q.x};
+    clip(n.x * (solid.eye.x - p.x) + n.y * (solid.eye.y - p.y), n.x * d.x + n.y * d.y);
+  }
+  if (enter > leave) return std::nullopt;
+  return enter;
+}
+
+// Boxes that do not touch, seen from the origin: rods and plates of many sizes, turned at random.
+class RandomBoxes {
+ public:
+  RandomBoxes(std::uint64_t seed, std::size_t count, bool may_touch) {
+    outlines_.reserve(count);  // solids point into it
+    for (std::uint64_t id = 0; solids.size() < count; ++id) add(seed, id, may_touch);
+  }
+  std::vector<StripSolid> solids;
+
+ private:
+  struct Frame {
+    Vec3 axis[3];
+    double half[3];
+  };
+  void add(std::uint64_t seed, std::uint64_t id, bool may_touch) {
+    const auto noise = [&](std::uint64_t k) { return random_unit(seed, id, k) - 0.5; };
+    const double x = 0.1 + 1.2 * random_unit(seed, id, 1), y = 0.1 + 0.8 * random_unit(seed, id, 2);
+    StripSolid solid;
+    solid.half = 0.02 + 0.2 * random_unit(seed, id, 3);
+    solid.pose.rotation = turned({noise(4), noise(5), noise(6)}, 0.4 * noise(7));
+    solid.pose.position = {5 * noise(8), 5 * noise(9), -7 + 5 * noise(10)};
+    Frame frame{{}, {x, y, solid.half}};
+    frame.axis[0] = rotate(solid.pose.rotation, {1, 0, 0});
+    frame.axis[1] = rotate(solid.pose.rotation, {0, 1, 0});
+    frame.axis[2] = rotate(solid.pose.rotation, {0, 0, 1});
+    for (std::size_t i = 0; i < solids.size() && !may_touch; ++i) {
+      if (!are_apart(frame, frames_[i], solids[i].pose.position - solid.pose.position)) return;
+    }
+    frames_.push_back(frame);
+    outlines_.push_back({{-x, -y}, {x, -y}, {x, y}, {-x, y}});
+    solid.outline = outlines_.back();
+    solid.eye = inverse(solid.pose) * Vec3{};
+    solid.body = static_cast<std::uint32_t>(id);
+    place_on_screen(solid);
+    solids.push_back(solid);
+  }
+  // Separating axes of two boxes: faces of both, and pairs of edges.
+  static bool are_apart(const Frame& a, const Frame& b, Vec3 between) {
+    const auto separates = [&](Vec3 axis) {
+      if (length(axis) < 1e-6) return false;
+      double reach = 0;
+      for (int i = 0; i < 3; ++i) {
+        reach += a.half[i] * std::abs(dot(a.axis[i], axis));
+        reach += b.half[i] * std::abs(dot(b.axis[i], axis));
+      }
+      return std::abs(dot(between, axis)) > reach;
+    };
+    for (int i = 0; i < 3; ++i) {
+      if (separates(a.axis[i]) || separates(b.axis[i])) return true;
+      for (int k = 0; k < 3; ++k) {
+        if (separates(cross(a.axis[i], b.axis[k]))) return true;
+      }
+    }
+    return false;
+  }
+  static void place_on_screen(StripSolid& solid) {
+    const StripCamera camera{{}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1, 0.01, {}};
+    std::vector<Vec2> picture;
+    for (const double side : {-solid.half, solid.half}) {
+      for (const Vec2 p : solid.outline) {
+        solid.corners.push_back(solid.pose * Vec3{p.x, p.y, side});
+        picture.push_back(camera.project(camera.see(solid.corners.back())));
+      }
+    }
+    solid.silhouette = convex_hull(picture);
+    solid.screen = bounding_box(solid.silhouette);
+    solid.distance = length(solid.pose.position);
+  }
+  std::vector<std::vector<Vec2>> outlines_;
+  std::vector<Frame> frames_;
+};
+
+// Lines of sight through random boxes on which an order paints the nearest one last, or does not.
+struct Sights {
+  std::size_t right = 0, wrong = 0;
+};
+Sights look_through(const std::vector<StripSolid>& solids, std::span<const std::uint32_t> order,
+                    std::uint64_t seed) {
+  Sights result;
+  for (std::uint64_t k = 0; k < 1500; ++k) {
+    const Vec3 ray{random_unit(seed, k, 17) - 0.5, random_unit(seed, k, 18) - 0.5, -1};
+    double nearest = 1e300, of_last = -1;
+    for (const std::uint32_t i : order) {
+      const std::optional<double> hit = hit_of(solids[i], ray);
+      if (!hit) continue;
+      nearest = std::min(nearest, *hit);
+      of_last = *hit;
+    }
+    if (of_last >= 0) ++(of_last == nearest ? result.right : result.wrong);
+  }
+  return result;
+}
+
+// The oracle is ray casting: of all solids a line of sight meets, the nearest is painted last.
+TEST(PaintersOrder, TheNearestSolidOfEveryLineOfSightIsPaintedLast) {
+  Sights painted, by_distance;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const RandomBoxes boxes(seed, 120, false);
+    const std::vector<std::uint32_t> order = painters_order(boxes.solids);
+    ASSERT_EQ(order.size(), boxes.solids.size());
+    const Sights a = look_through(boxes.solids, order, seed);
+    painted.right += a.right, painted.wrong += a.wrong;
+    std::vector<std::uint32_t> sorted = order;
+    std::ranges::sort(sorted, std::greater<>(),
+                      [&](std::uint32_t i) { return boxes.solids[i].distance; });
+    const Sights b = look_through(boxes.solids, sorted, seed);
+    by_distance.right += b.right, by_distance.wrong += b.wrong;
+  }
+  EXPECT_GT(painted.right, 5000u);
+  EXPECT_EQ(painted.wrong, 0u);
+  EXPECT_GT(by_distance.wrong, 50u);  // it is not too easy
+}
+
+TEST(PaintersOrder, PaintsEverySolidOnceEvenIfTheyOverlap) {
+  std::vector<std::uint32_t> order = painters_order(RandomBoxes(1, 300, true).solids);
+  ASSERT_EQ(order.size(), 300u);
+  std::ranges::sort(order);
+  for (std::uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
+}
+
+TEST(StripCamera, ShowsTheWallsWholeFromTheSideThatChunksFlyTo) {
+  for (const double degrees : {0.0, 50.0, 180.0, 235.0}) {
+    WallAsset wall = sample_wall("facade", 12, 6);
+    wall.wall.rotation = rotation_from_degrees({0, degrees, 0});
+    wall.wall.position = {20, 0, -7};
+    const Recording recording = sample_recording({wall}, {.hit = {3, 1.5}});
+    const StripCamera camera = place_camera(recording, strip_steps(recording, 6));
+    const Pose pose{wall.wall.position, wall.wall.rotation};
+    EXPECT_LT((inverse(pose) * camera.eye).z, 0) << degrees;  // the ball flies along -z
+    for (const double x : {0.0, 6.0}) {
+      for (const double y : {0.0, 3.0}) {
+        const Vec2 p = camera.project(camera.see(pose * Vec3{x, y, 0}));
+        EXPECT_GT(p.x, 0);
+        EXPECT_LT(p.x, kStripWidth);
+        EXPECT_GT(p.y, 0);
+        EXPECT_LT(p.y, kStripHeight);
+      }
+    }
+    EXPECT_NEAR(dot(camera.right, camera.back), 0, 1e-12);
+    EXPECT_NEAR(dot(camera.light, camera.light), 1, 1e-12);
+    // The wall's seen side is lit.
+    EXPECT_GT(dot(rotate(pose.rotation, {0, 0, -1}), camera.light), 0.4);
+  }
+}
+
+TEST(StripCamera, MovesWithTheScene) {
+  const Recording plain = sample();
+  WallAsset wall = plain.walls[0].asset;
+  wall.wall.rotation = rotation_from_degrees({0, 90, 0});
+  wall.wall.position = {4, 0, 9};
+  const Recording moved = sample_recording({wall}, {.hit = {3, 1.5}});
+  const Pose pose{wall.wall.position, wall.wall.rotation};
+  const StripCamera a = place_camera(plain, strip_steps(plain, 6));
+  const StripCamera b = place_camera(moved, strip_steps(moved, 6));
+  EXPECT_NEAR(length(pose * a.eye - b.eye), 0, 1e-9);
+  EXPECT_NEAR(length(rotate(pose.rotation, a.back) - b.back), 0, 1e-12);
+}
+
+TEST(StripParts, TileEveryChunkWithItsEdges) {
+  WallAsset wall = sample_wall("facade", 12, 6);
+  Recording recording = sample_recording({wall});
+  const std::vector<StripPart> parts = strip_parts(recording);
+  ASSERT_GE(parts.size(), wall.chunks.size());
+  std::map<std::uint32_t, double> areas;
+  std::size_t borders = 0, shared = 0;
+  for (const StripPart& part : parts) {
+    EXPECT_GT(area(part.outline), 0);
+    areas[part.chunk] += area(part.outline);
+    borders += std::ranges::count(part.across, StripPart::kBorder);
+    for (const std::uint32_t beyond : part.across) shared += beyond < wall.chunks.size();
+  }
+  for (const auto& [chunk, sum] : areas) EXPECT_NEAR(sum, cell_area(wall.pattern, chunk), 1e-12);
+  EXPECT_EQ(borders, 2u * (12 + 6));
+  EXPECT_EQ(shared, 2u * (11 * 6 + 12 * 5));
+}
+
+TEST(Strip, HasAPictureAndATimePerFrame) {
+  const Recording recording = sample();
+  for (const int frames : {1, 2, 6, 7}) {
+    const std::string svg = draw_strip(recording, {.frames = frames});
+    EXPECT_TRUE(svg.starts_with("<svg "));
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+    EXPECT_EQ(count_of(svg, "<svg"), static_cast<std::size_t>(frames) + 1);
+    EXPECT_EQ(count_of(svg, "<svg"), count_of(svg, "</svg>"));
+    EXPECT_EQ(count_of(svg, "<g "), count_of(svg, "</g>"));
+    EXPECT_EQ(count_of(svg, " s</text>"), static_cast<std::size_t>(frames));
+    EXPECT_EQ(count_of(svg, "nan") + count_of(svg, "inf"), 0u);
+  }
+}
+
+TEST(Strip, AStandingWallShowsNoBrokenFaces) {
+  Recording recording = sample();
+  std::ranges::fill(recording.walls[0].track, kNoTrack);
+  recording.projectiles.clear();
+  const std::string svg = draw_strip(recording, {.frames = 1});
+  // Caps and the narrow sides of the border are of outer colour, and one run paints all caps that
+  // show nothing else: far fewer paths than chunks.
+  EXPECT_LT(count_of(svg, "<path"), 2u * (12 + 6) * 3);
+  EXPECT_EQ(count_of(svg, "<circle"), 0u);
+}
+
+TEST(Strip, WithoutGroundThereIsNoGroundAndNoShadow) {
+  const std::string svg = draw_strip(sample(), {.frames = 2, .has_ground = false});
+  EXPECT_EQ(count_of(svg, "url(#soft)"), 0u);
+  EXPECT_EQ(count_of(svg, "fill=\"url(#land)"), 0u);
+  EXPECT_GT(count_of(draw_strip(sample(), {.frames = 2}), "url(#soft)"), 0u);
+}
+
+TEST(Strip, StaysSmallForManyChunks) {
+  const WallAsset wall = sample_wall("facade", 25, 20);  // 500 chunks, all of them flying
+  const Recording recording = sample_recording({wall}, {.steps = 120, .hit = {6, 5}, .radius = 30});
+  EXPECT_LT(draw_strip(recording).size(), 3'000'000u);
+}
+
+}  // namespace
+}  // namespace sunder
