@@ -295,10 +295,77 @@ same_output() {  # two names of one file
   expect_exit 0 "$sunder" fracture $wall -o a.svg -o x/a.svg
 }
 schemas() {
-  for which in scene material report; do
+  for which in scene material report impact-report; do
     expect_exit 0 "$sunder" schema $which
     expect_text out "json-schema.org/draft-07"
   done
+}
+
+impact_usage() {
+  echo '{"sunder": 1, "walls": [{}], "projectiles": [{"position": [3, 1, 5], "velocity": [0, 0, -9]}]}' > s.json
+  while IFS='|' read -r words message; do
+    expect_exit 2 "$sunder" impact $words
+    expect_text err "error: $message"
+  done << 'END'
+|impact needs a scene file
+s.json|impact has nothing to write: give -o FILE
+s.json -o a.obj|-o a.obj: impact writes .glb .gltf .svg .json
+s.json -o a.glb -o ./a.glb|./a.glb is written twice
+s.json -o ./s.json|./s.json would overwrite the input
+s.json t.json -o a.glb|"t.json" belongs to no option
+s.json -o a.glb --wall=6x3x0.2|there is no option "--wall"
+s.json -o a.glb --no-skipp|there is no option "--no-skipp", did you mean "--no-skip"?
+s.json -o a.glb --set projectiles.0.mass=0|--set: /projectiles/0/mass: 0 is outside
+s.json -o a.glb --seed -1|--seed -1: expected a whole number
+END
+  expect_exit 0 "$sunder" impact --help
+  expect_text out "--no-skip"
+  expect_exit 0 "$sunder" schema impact-report
+  expect_files "s.json"
+}
+impact_is_the_same() {
+  scene=$source/data/scenes/brick-door.json
+  short="--set simulation.duration=1.2"
+  expect_exit 0 "$sunder" impact "$scene" $short -o 1.glb -o 1.svg --report 1.json
+  expect_exit 0 "$sunder" impact "$scene" $short --threads 7 -o 2.glb -o 2.svg --report 2.json
+  expect_exit 0 "$sunder" impact "$scene" $short --no-skip -o 3.glb -o 3.svg --report 3.json
+  # Another sin, cos, exp, pow and log of the C library; they differ in last bits.
+  expect_exit 0 env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2_Usable,-FMA_Usable \
+    "$sunder" impact "$scene" $short -o 4.glb -o 4.svg --report 4.json
+  expect_exit 0 "$sunder" fracture "$scene" -o wall.glb
+  sed 's/"outline".*/"asset": "wall.glb",/; /"openings"/d; s/"thickness".*brick",//; /"pattern"/d' \
+    "$scene" > asset.json
+  expect_exit 0 "$sunder" impact asset.json $short -o 5.glb -o 5.svg --report 5.json
+  grep '"hash"' 1.json > hash
+  [ -s hash ] || fail "the report has no hash"
+  for n in 2 3 4 5; do
+    grep -qF "$(cat hash)" $n.json || fail "the hash of run $n differs"
+    cmp 1.glb $n.glb || fail "the recording of run $n differs"
+    cmp 1.svg $n.svg || fail "the pictures of run $n differ"
+  done
+  grep -q '"chunks_freed": 0,' 1.json && fail "nothing broke"
+  expect_exit 0 "$sunder" check 1.glb
+}
+impact_input() {
+  scene=$source/data/scenes/wrecking-ball.json
+  hit() { "$sunder" impact "$scene" --set simulation.duration=0.05 --report r.json "$@"; }
+  expect_exit 3 hit --set 'projectiles.0.position=[3, 1, 0.1]'
+  expect_text err 'projectile "ball" starts inside wall "wall"'
+  expect_exit 3 hit --set 'projectiles.0.position=[3, 0.1, 3]'
+  expect_text err 'below the ground'
+  expect_exit 2 hit --set projectiles.0.mass=0
+  expect_exit 2 hit --set projectiles.0.mass=-1
+  expect_exit 2 hit --set 'projectiles.0.velocity=[0, 0, 1e999]'
+  expect_exit 2 hit --set 'projectiles.0.velocity=[0, 0, NaN]'
+  expect_files ""
+  sed 's/"outline".*/"asset": "other.obj",/; s/"thickness".*//; /"pattern"/d' "$scene" > s.json
+  printf 'o cube\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' > other.obj
+  expect_exit 3 "$sunder" impact s.json --report r.json
+  expect_text err "other.obj"
+  echo nonsense > other.obj
+  expect_exit 3 "$sunder" impact s.json --report r.json
+  expect_text err "other.obj"
+  expect_files "other.obj s.json"
 }
 
 "$case"

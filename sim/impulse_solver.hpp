@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "meshing/vec.hpp"
+#include "sim/moving_body.hpp"
+
+class btSequentialImpulseConstraintSolver;
+
+// Internal to the rigid world.
+namespace sunder {
+
+/// What the solver reads besides Bullet's bodies and manifolds; a manifold point's m_index0 is its
+/// number among the meetings. Results are in the manifold points and in the bodies.
+struct SolverTask {
+  std::vector<Meeting> meetings;
+  Vec3 gravity;
+  double dt = 0;
+};
+
+/// Bullet's solver with a friction cone instead of a box, sweeps there and back, restitution after
+/// the solve without it, and overlaps removed last, by what remains of them at the end of the step.
+std::unique_ptr<btSequentialImpulseConstraintSolver> impulse_solver(SolverTask& task);
+
+}  // namespace sunder

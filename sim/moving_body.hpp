@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sim/principal_axes.hpp"
+#include "sim/rigid_world.hpp"
+#include "sim/solid.hpp"
+#include "sim/spin.hpp"
+
+class btManifoldPoint;
+class btRigidBody;
+
+// Internal to the rigid world: what it keeps of a body, and of a contact while a step is taken.
+namespace sunder {
+
+struct Body {
+  explicit Body(Solid of);
+  ~Body();
+
+  BodyId id = kNoBody;
+  std::uint64_t order = 0;
+  bool moves = false, awake = false;
+  double mass = 0;
+  SymMat3 inertia, inverse_inertia;  ///< axes of the design frame
+  Vec3 centroid;                     ///< design frame
+  PrincipalAxes principal;           ///< of the inertia: Bullet's frame, in the design frame
+  Surface surface;
+  Solid solid;
+  std::unique_ptr<btRigidBody> in_bullet;
+
+  Vec3 centre;
+  Quaternion rotation;  ///< of the design frame
+  Axes axes;            ///< of rotation
+  Vec3 velocity, spin;
+  double still_for = 0;  ///< s
+
+  // Of the step in progress.
+  Vec3 velocity_before, spin_before;
+  Extent swept;             ///< wherever it may be during the step
+  double contact_time = 0;  ///< since the start of the step: its impulses act then
+  bool arrives = false;     ///< contact_time is that of an impact
+  std::uint32_t slot = 0;   ///< 0: does not move, or has no contact
+  Vec3 shift;               ///< of the centre until contact_time
+  Quaternion rotation_then;
+  Axes axes_then;  ///< of rotation_then
+  Vec3 spin_then;  ///< before the impulses
+  Vec3 velocity_after, spin_after;  ///< the solver's
+  Vec3 push, turn;  ///< displacement that removes overlap, m and rad; leaves velocities alone
+
+  bool is_ground() const { return id == kGround; }
+  Vec3 angular_momentum(const Axes& at, Vec3 w) const { return at * (inertia * into(at, w)); }
+  /// Spin that goes with an angular momentum.
+  Vec3 spin_at(const Axes& at, Vec3 l) const { return at * (inverse_inertia * into(at, l)); }
+  double kinetic_energy() const {
+    return (mass * dot(velocity, velocity) + dot(spin, angular_momentum(axes, spin))) / 2;
+  }
+};
+
+/// Contacts are solved in this order.
+inline bool ranks_before(const Body& a, const Body& b) {
+  return a.order != b.order ? a.order < b.order : a.id < b.id;
+}
+
+/// A contact point of the step in progress, and how its bodies come to it. Positions are relative
+/// to `origin`, the centre of one that moves.
+struct Meeting {
+  Body* a = nullptr;
+  Body* b = nullptr;
+  Vec3 origin;
+  Vec3 point, normal;  ///< at the start of the step; the normal leads from b to a
+  double gap = 0;
+  double gap_then = 0;  ///< when the bodies are where their impulses act
+  double closing = 0;   ///< normal speed towards each other at the start, m/s
+  double pull = 0;      ///< by how much gravity adds to it, m/s²
+  bool arrives = false;      ///< the gap closes within the step, at more than a creeping speed
+  double arrival_time = 0;   ///< since the start of the step
+  double arrival_speed = 0;  ///< m/s
+  double bound = 0;          ///< the normal velocity may not fall below it, m/s
+  Vec3 arm_a, arm_b;         ///< from the centres to the point when the impulses act
+  /// Impulses of a contact that lasts, in the time before something arrives: not solved for.
+  double given = 0, given_along = 0, given_across = 0;
+  btManifoldPoint* solved = nullptr;
+};
+
+}  // namespace sunder
