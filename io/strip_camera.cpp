@@ -13,9 +13,8 @@ namespace {
 
 constexpr double kAzimuth = 40.0 / 360, kElevation = 11.0 / 360;  // turns
 constexpr double kHalfWidth = 0.36;                               // slope of the picture's side
-constexpr double kMargin = 1.1;
-constexpr double kMostFar = 1.75;   // times the distance that the walls alone would need
-constexpr double kOutliers = 0.03;  // share of chunks that may leave the picture
+constexpr double kMargin = 1.06;
+constexpr double kDebris = 0.6;  // depth of the debris shown, of the wall's smaller side
 
 Vec3 unit(Vec3 v) {
   const double size = length(v);
@@ -36,20 +35,50 @@ std::vector<Vec3> corners_of(const WallAsset& wall) {
   return corners;
 }
 
-// What the picture is to show.
+// What the picture is to show whole, and what it had better not hide.
 struct Interest {
-  std::vector<Vec3> walls, chunks, projectiles;
+  std::vector<Vec3> frame, chunks, projectiles;
 };
 
-Interest find_interest(const Recording& recording, std::span<const std::uint32_t> steps) {
+// Along the wall's normal: +1 or -1, where chunks went at last; 0 if none left it. None counts for
+// more than the wall's thickness.
+double debris_side(const Recording& recording, const RecordedWall& wall, std::uint32_t step) {
+  const Pose back = inverse({wall.asset.wall.position, wall.asset.wall.rotation});
+  const double thickness = wall.asset.wall.thickness;
+  double sum = 0;
+  for (std::uint32_t c = 0; c < wall.track.size(); ++c) {
+    const ChunkPlace place = place_of(recording, wall, c, step);
+    if (place.track == kNoTrack) continue;
+    const Vec3 centroid = wall.asset.chunks[c].centroid;
+    sum += std::clamp((back * (place.pose * centroid)).z - centroid.z, -thickness, thickness);
+  }
+  return sum > 0 ? 1 : sum < 0 ? -1 : 0;
+}
+
+// Adds a wall, the ground below it, and there the place where chunks come down.
+void frame_wall(const WallAsset& asset, double side, std::optional<double> ground,
+                std::vector<Vec3>& points) {
+  const Box box = bounding_box(asset.wall.region.outline);
+  const double small = std::min(box.high.x - box.low.x, box.high.y - box.low.y);
+  const std::vector<Vec3> corners = corners_of(asset);
+  const auto [lowest, highest] = std::ranges::minmax(corners, {}, &Vec3::y);
+  double floor = lowest.y;
+  if (ground && floor - *ground <= std::max(highest.y - lowest.y, small)) {
+    floor = std::min(floor, *ground);
+  }
+  const Vec3 out = rotate(asset.wall.rotation, {0, 0, side * kDebris * small});
+  for (const Vec3 p : corners) {
+    points.push_back(p);
+    points.push_back({p.x, floor, p.z});
+    points.push_back({p.x + out.x, floor, p.z + out.z});
+  }
+}
+
+Interest find_interest(const Recording& recording, std::span<const std::uint32_t> steps,
+                       std::optional<double> ground) {
   Interest result;
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (const RecordedWall& wall : recording.walls) {
-    for (const Vec3 p : corners_of(wall.asset)) {
-      result.walls.push_back(p);
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
+    frame_wall(wall.asset, debris_side(recording, wall, steps.back()), ground, result.frame);
     for (std::uint32_t c = 0; c < wall.track.size(); ++c) {
       for (const std::uint32_t step : steps) {
         const ChunkPlace place = place_of(recording, wall, c, step);
@@ -59,13 +88,10 @@ Interest find_interest(const Recording& recording, std::span<const std::uint32_t
       }
     }
   }
-  const Vec3 centre = 0.5 * (low + high);
-  const double reach = 0.75 * length(high - low);
   for (const RecordedProjectile& recorded : recording.projectiles) {
     const Pose start{recorded.projectile.position, {}};
     for (const std::uint32_t step : steps) {
-      const Vec3 at = pose_at(recording, recorded.track, step, start).position;
-      if (length(at - centre) < reach) result.projectiles.push_back(at);
+      result.projectiles.push_back(pose_at(recording, recorded.track, step, start).position);
     }
   }
   return result;
@@ -89,58 +115,26 @@ void point_along(StripCamera& camera, Vec3 back) {
   camera.up = cross(camera.back, camera.right);
 }
 
-// Extent of points in a direction that widens with depth; `outliers`: share left out.
-double reach_of(std::span<const Vec3> points, Vec3 direction, double outliers) {
-  std::vector<double> reach;
-  for (const Vec3 p : points) reach.push_back(dot(p, direction));
-  if (reach.empty()) return -std::numeric_limits<double>::infinity();
-  const auto skip = static_cast<std::size_t>(outliers * static_cast<double>(reach.size()));
-  std::ranges::nth_element(reach, reach.begin() + static_cast<std::ptrdiff_t>(skip),
-                           std::greater<>());
-  return reach[skip];
-}
-
-// How far points reach to the four sides of a picture, and the distance that shows them all. A
-// camera looking along -back sees p if |right·(p - eye)| <= k back·(eye - p), and the same for up:
-// four planes, each pushed out to the farthest point.
-struct Extent {
-  double right = 0, left = 0, top = 0, bottom = 0;
-};
-constexpr double kSlopeX = kHalfWidth / kMargin, kSlopeY = kSlopeX * kStripHeight / kStripWidth;
-
-Extent extent_of(const StripCamera& camera, const Interest& interest) {
-  const auto reach = [&](Vec3 side, double slope) {
-    const Vec3 direction = side + slope * camera.back;
-    double result = reach_of(interest.walls, direction, 0);
-    result = std::max(result, reach_of(interest.chunks, direction, kOutliers));
-    return std::max(result, reach_of(interest.projectiles, direction, 0));
-  };
-  return {reach(camera.right, kSlopeX), reach(-1.0 * camera.right, kSlopeX),
-          reach(camera.up, kSlopeY), reach(-1.0 * camera.up, kSlopeY)};
-}
-
-double depth_of(const Extent& extent) {
-  return std::max((extent.right + extent.left) / (2 * kSlopeX),
-                  (extent.top + extent.bottom) / (2 * kSlopeY));
-}
-
-StripCamera fitted(Vec3 back, const Interest& interest) {
+// Looks along -back from so far that all points fill the picture. A camera sees p if
+// |right·(p - eye)| <= k back·(eye - p), and the same for up: four planes, each pushed out to the
+// farthest point.
+StripCamera fitted(Vec3 back, std::span<const Vec3> points) {
+  constexpr double kSlopeX = kHalfWidth / kMargin, kSlopeY = kSlopeX * kStripHeight / kStripWidth;
   StripCamera camera;
   point_along(camera, back);
   camera.focal = 0.5 * kStripWidth / kHalfWidth;
+  const auto reach = [&](Vec3 side, double slope) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Vec3 p : points) most = std::max(most, dot(p, side + slope * camera.back));
+    return most;
+  };
+  const double right = reach(camera.right, kSlopeX), left = reach(-1.0 * camera.right, kSlopeX);
+  const double top = reach(camera.up, kSlopeY), bottom = reach(-1.0 * camera.up, kSlopeY);
+  const double depth = std::max((right + left) / (2 * kSlopeX), (top + bottom) / (2 * kSlopeY));
+  camera.eye =
+      0.5 * (right - left) * camera.right + 0.5 * (top - bottom) * camera.up + depth * camera.back;
   double middle = 0;
-  for (const Vec3 p : interest.walls) middle += dot(p, camera.back);
-  middle /= std::max<double>(1, static_cast<double>(interest.walls.size()));
-  const Extent walls = extent_of(camera, {interest.walls, {}, {}});
-  const Extent all = extent_of(camera, interest);
-  const double near = depth_of(walls) - middle;
-  const double depth = middle + std::min(depth_of(all) - middle, kMostFar * near);
-  // The walls are shown whole, the rest as far as there is room.
-  const double across = std::clamp(0.5 * (all.right - all.left), walls.right - kSlopeX * depth,
-                                   kSlopeX * depth - walls.left);
-  const double height = std::clamp(0.5 * (all.top - all.bottom), walls.top - kSlopeY * depth,
-                                   kSlopeY * depth - walls.bottom);
-  camera.eye = across * camera.right + height * camera.up + depth * camera.back;
+  for (const Vec3 p : points) middle += dot(p, camera.back) / static_cast<double>(points.size());
   camera.nearest = 0.05 * (depth - middle);
   return camera;
 }
@@ -182,8 +176,9 @@ ChunkPlace place_of(const Recording& recording, const RecordedWall& wall, std::u
   return {pose_at(recording, track, step, standing), track};
 }
 
-StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps) {
-  const Interest interest = find_interest(recording, steps);
+StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps,
+                         std::optional<double> ground) {
+  const Interest interest = find_interest(recording, steps, ground);
   Vec3 normal{0, 0, 1};
   if (const RecordedWall* wall = most_broken(recording)) {
     normal = rotate(wall->asset.wall.rotation, {0, 0, 1});
@@ -197,7 +192,7 @@ StripCamera place_camera(const Recording& recording, std::span<const std::uint32
   for (const double side : {1.0, -1.0}) {
     for (const double hand : {1.0, -1.0}) {
       const Vec3 flat = side * turn.x * normal + hand * turn.y * along;
-      const StripCamera camera = fitted(rise.x * flat + Vec3{0, rise.y, 0}, interest);
+      const StripCamera camera = fitted(rise.x * flat + Vec3{0, rise.y, 0}, interest.frame);
       const double seen = visibility(recording, camera, interest);
       if (seen <= most + 0.02) continue;
       most = seen;

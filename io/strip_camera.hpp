@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "meshing/vec.hpp"
@@ -33,8 +34,12 @@ struct StripCamera {
 
 /// One camera for all steps of a strip. It stands on the side of the most broken wall from which
 /// more of the moving chunks are seen past the standing walls, 40° off the wall's normal, and so
-/// near that the walls and, if they do not fly too far, nearly all chunks fill the picture.
-StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps);
+/// near that the walls and what happens close to them fill the picture: a box that is deeper than
+/// the wall by 0.6 of its width or height, on the side that chunks leave by, and stands on the
+/// ground (m, none: it is not shown) if the wall is not farther above it than it is high. What
+/// flies beyond is cut off.
+StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps,
+                         std::optional<double> ground = {});
 
 /// Where the frame of chunk `chunk` is at a step, and the track it moves along (kNoTrack: stands).
 struct ChunkPlace {

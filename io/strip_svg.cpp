@@ -3,43 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "io/strip_camera.hpp"
 #include "io/strip_paper.hpp"
 #include "io/strip_picture.hpp"
 #include "io/strip_scene.hpp"
+#include "io/strip_steps.hpp"
 
 namespace sunder {
 namespace {
 
 constexpr std::size_t kColumns = 3;
-constexpr double kGap = 100;      // between pictures, picture units
-constexpr double kAtRest = 0.95;  // share of the moving chunks that rest at the last picture
-
-// First and last step worth showing.
-TimeRange eventful_steps(const Recording& recording) {
-  const auto last = static_cast<std::uint32_t>(recording.times.size()) - 1;
-  std::vector<std::uint32_t> ends;
-  std::uint32_t first = last;
-  for (const RecordedWall& wall : recording.walls) {
-    for (const std::uint32_t track : wall.track) {
-      const TimeRange moving = moving_range(recording, track);
-      if (moving.first >= moving.end) continue;
-      first = std::min(first, moving.first);
-      ends.push_back(moving.end - 1);
-    }
-  }
-  if (ends.empty()) return {0, last};
-  std::ranges::sort(ends);
-  const auto at = static_cast<std::size_t>(kAtRest * static_cast<double>(ends.size() - 1));
-  return {first > 0 ? first - 1 : 0, ends[at]};
-}
-
-bool anything_breaks(const Recording& recording) {
-  return std::ranges::any_of(recording.walls, [](const RecordedWall& wall) {
-    return std::ranges::any_of(wall.track, [](std::uint32_t t) { return t != kNoTrack; });
-  });
-}
+constexpr double kGap = 100;  // between pictures, picture units
 
 // Time in seconds, with a digit more where pictures would have the same one.
 std::string label_of(double time, int digits) {
@@ -97,25 +73,12 @@ void draw_page(const StripScene& scene, const std::vector<std::uint32_t>& steps,
 
 }  // namespace
 
-std::vector<std::uint32_t> strip_steps(const Recording& recording, int frames) {
-  const TimeRange range = eventful_steps(recording);
-  const double begin = recording.times[range.first], end = recording.times[range.end];
-  const bool grows = anything_breaks(recording);
-  std::vector<std::uint32_t> steps;
-  for (int i = 0; i < frames; ++i) {
-    const double t = frames > 1 ? static_cast<double>(i) / (frames - 1) : 0.5;
-    const double time = begin + (grows ? t * t : t) * (end - begin);
-    const auto next = std::ranges::lower_bound(recording.times, time - 1e-12);
-    auto step = static_cast<std::uint32_t>(next - recording.times.begin());
-    step = std::min(step, static_cast<std::uint32_t>(recording.times.size()) - 1);
-    if (steps.empty() || step > steps.back()) steps.push_back(step);
-  }
-  return steps;
-}
-
 std::string draw_strip(const Recording& recording, const StripParams& params) {
   const std::vector<std::uint32_t> steps = strip_steps(recording, params.frames);
-  const StripScene scene{recording, params, strip_parts(recording), place_camera(recording, steps)};
+  const std::optional<double> ground =
+      params.has_ground ? std::optional(params.ground_height) : std::nullopt;
+  const StripScene scene{recording, params, strip_parts(recording),
+                         place_camera(recording, steps, ground)};
   StripPaper paper;
   draw_page(scene, steps, paper);
   return paper.take();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "sim/recording.hpp"
 
@@ -17,10 +16,5 @@ struct StripParams {
 /// Pictures of a recording, side by side in rows of three, as SVG: in perspective from one place,
 /// with the time below each. Same recording, same bytes. The recording is valid.
 std::string draw_strip(const Recording& recording, const StripParams& params = {});
-
-/// Steps that a strip shows, ascending: the last before anything breaks, then at intervals that
-/// grow with their square up to when nearly all chunks rest; without moving chunks evenly over the
-/// recording.
-std::vector<std::uint32_t> strip_steps(const Recording& recording, int frames);
 
 }  // namespace sunder

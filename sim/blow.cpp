@@ -11,7 +11,7 @@
 #include "sim/penetration.hpp"
 
 // Plate: L. Cremer, M. Heckl, "Structure-Borne Sound" (point impedance); the moment under a step
-// force is derived in docs/accuracy.md. Sphere: H. Hertz, "Über die Berührung fester elastischer
+// force is derived in docs/impact.md. Sphere: H. Hertz, "Über die Berührung fester elastischer
 // Körper", 1882.
 namespace sunder {
 namespace {

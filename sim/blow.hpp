@@ -34,7 +34,7 @@ struct Blow {
 ///
 /// Force: the least of
 ///   plate impedance  Z v, Z = 8 √(D ρ H)                (point impedance of a plate; derived in
-///                                                         docs/accuracy.md, Cremer & Heckl)
+///                                                         docs/impact.md, Cremer & Heckl)
 ///   Hertz            K^0.4 (5/4 m v²)^0.6, K = 4/3 E* √R
 ///   crushing         4 f_c π R²                           (only when f_c is known)
 /// Duration: m/Z + Hertz' 2.87 (m² / (R E*² v))^0.2; once it crushes, from the speed v_c on, that

@@ -104,6 +104,27 @@ double gap_between(const RigidWorld::Bounds& a, Vec3 low, Vec3 high) {
 
 }  // namespace
 
+ImpactRun::NearWall ImpactRun::nearest_wall(const RigidWorld::Bounds& bounds) const {
+  NearWall nearest;
+  for (const WallState& wall : walls_)
+    if (const double gap = gap_between(bounds, wall.low, wall.high); gap < nearest.gap)
+      nearest = {gap, 2 * wall.half_thickness};
+  return nearest;
+}
+
+double ImpactRun::nearest_gap(const Shot& shot) const {
+  const RigidWorld::Bounds bounds = world_.bounds(shot.body);
+  double nearest = nearest_wall(bounds).gap;
+  const auto consider = [&](BodyId other) {
+    const RigidWorld::Bounds b = world_.bounds(other);
+    nearest = std::min(nearest, gap_between(bounds, b.low, b.high));
+  };
+  for (const std::uint32_t i : live_) consider(islands_[i].body);
+  for (const Shot& other : shots_)
+    if (&other != &shot && other.body != kNoBody) consider(other.body);
+  return nearest;
+}
+
 // The longest substep in which nothing could pass through something else: a projectile near
 // anything covers a share of its radius at most, debris near a wall of the wall's thickness. The
 // ground has no other side.
@@ -111,44 +132,20 @@ double ImpactRun::distance_limit(double dt) const {
   const double share =
       kStepShare * std::clamp(std::sqrt(scene_.simulation.max_error / 0.01), 0.1, 1.0);
   double limit = dt;
-  const auto keep_to = [&](double speed, double size, double nearest) {
-    if (speed * limit > share * size)
-      limit = std::min(limit, std::max(share * size, 0.5 * nearest) / speed);
-  };
-  const auto nearest_wall = [&](const RigidWorld::Bounds& bounds, double* thickness) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const WallState& wall : walls_) {
-      const double gap = gap_between(bounds, wall.low, wall.high);
-      if (gap >= nearest) continue;
-      nearest = gap;
-      *thickness = 2 * wall.half_thickness;
-    }
-    return nearest;
-  };
   for (const std::uint32_t i : live_) {
     if (!world_.is_awake(islands_[i].body)) continue;
     const double speed = length(world_.velocity(islands_[i].body));
     if (speed * limit <= share * least_thickness_) continue;
-    double thickness = 0;
-    const double nearest = nearest_wall(world_.bounds(islands_[i].body), &thickness);
-    keep_to(speed, std::max(thickness, 2 * walls_[islands_[i].wall].half_thickness), nearest);
+    const NearWall near = nearest_wall(world_.bounds(islands_[i].body));
+    const double size = std::max(near.thickness, 2 * walls_[islands_[i].wall].half_thickness);
+    limit = std::min(limit, std::max(share * size, 0.5 * near.gap) / speed);
   }
   for (const Shot& shot : shots_) {
     if (shot.body == kNoBody || !world_.is_awake(shot.body)) continue;
-    const double speed = length(world_.velocity(shot.body)), radius = shot.projectile.radius;
-    if (speed * limit <= share * radius) continue;
-    const RigidWorld::Bounds bounds = world_.bounds(shot.body);
-    double thickness = 0, nearest = nearest_wall(bounds, &thickness);
-    for (const std::uint32_t i : live_) {
-      const RigidWorld::Bounds other = world_.bounds(islands_[i].body);
-      nearest = std::min(nearest, gap_between(bounds, other.low, other.high));
-    }
-    for (const Shot& other : shots_)
-      if (&other != &shot && other.body != kNoBody) {
-        const RigidWorld::Bounds b = world_.bounds(other.body);
-        nearest = std::min(nearest, gap_between(bounds, b.low, b.high));
-      }
-    keep_to(speed, radius, nearest);
+    const double speed = length(world_.velocity(shot.body));
+    if (speed * limit <= share * shot.projectile.radius) continue;
+    limit = std::min(limit,
+                     std::max(share * shot.projectile.radius, 0.5 * nearest_gap(shot)) / speed);
   }
   return limit;
 }

@@ -85,35 +85,10 @@ void ImpactRun::add_walls() {
   for (const ImpactWall& wall : scene_.walls) walls_.emplace_back(wall);
   broken_pairs_.resize(walls_.size());
   least_thickness_ = std::numeric_limits<double>::infinity();
-  for (const WallState& wall : walls_)
-    least_thickness_ = std::min(least_thickness_, 2 * wall.half_thickness);
-  std::vector<std::vector<std::vector<std::uint32_t>>> loose(walls_.size());
+  std::vector<std::vector<std::vector<std::uint32_t>>> loose;
   for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-    const WallState& wall = walls_[w];
-    const auto count = static_cast<std::uint32_t>(wall.chunks.size());
-    const Components parts = components_of(count, wall.asset.bonds);
-    std::vector<std::vector<std::uint32_t>> members(count);
-    for (std::uint32_t c = 0; c < count; ++c) members[parts.root[c]].push_back(c);
-    const bool anchored = std::ranges::any_of(parts.anchored, [](auto flag) { return flag != 0; });
-    const auto most = std::ranges::max_element(members, {}, &std::vector<std::uint32_t>::size);
-    std::vector<std::uint32_t> main;
-    for (std::uint32_t c = 0; c < count; ++c) {
-      const std::uint32_t root = parts.root[c];
-      if (anchored ? parts.anchored[root] != 0 : &members[root] == &*most) main.push_back(c);
-      else if (root == c) loose[w].push_back(members[c]);
-    }
-    islands_.push_back({});
-    islands_.back().wall = w;
-    if (main.size() == count) {
-      islands_.back() = make_island(wall, w, std::move(main), wall.asset.bonds);
-    } else {
-      islands_.back() = make_island(wall, w, main, bonds_among(main, wall.asset.bonds));
-    }
-    for (const std::uint32_t c : islands_[w].chunks) walls_[w].chunks[c].island = w;
-    if (!anchored) {
-      islands_[w].track = recorder_.add_track(kNoTrack);
-      add_body_of(w, motion_of(islands_[w]));
-    }
+    least_thickness_ = std::min(least_thickness_, 2 * walls_[w].half_thickness);
+    loose.push_back(add_wall(w));
   }
   for (std::uint32_t w = 0; w < walls_.size(); ++w)
     for (const std::vector<std::uint32_t>& members : loose[w]) {
@@ -124,6 +99,33 @@ void ImpactRun::add_walls() {
     }
   if (!params_.skip)
     for (std::uint32_t w = 0; w < walls_.size(); ++w) raise_colliders_near(w, {}, {});
+}
+
+// Island w; returns the components that are not part of it.
+std::vector<std::vector<std::uint32_t>> ImpactRun::add_wall(std::uint32_t w) {
+  const auto count = static_cast<std::uint32_t>(walls_[w].chunks.size());
+  const std::vector<Bond>& bonds = walls_[w].asset.bonds;
+  const Components parts = components_of(count, bonds);
+  std::vector<std::vector<std::uint32_t>> members(count), loose;
+  for (std::uint32_t c = 0; c < count; ++c) members[parts.root[c]].push_back(c);
+  const bool anchored = std::ranges::any_of(parts.anchored, [](auto flag) { return flag != 0; });
+  const auto most = std::ranges::max_element(members, {}, &std::vector<std::uint32_t>::size);
+  const auto largest = static_cast<std::uint32_t>(most - members.begin());
+  std::vector<std::uint32_t> main;
+  for (std::uint32_t c = 0; c < count; ++c) {
+    const std::uint32_t root = parts.root[c];
+    if (anchored ? parts.anchored[root] != 0 : root == largest) main.push_back(c);
+    else if (root == c) loose.push_back(members[c]);
+  }
+  islands_.push_back(main.size() == count
+                         ? make_island(walls_[w], w, std::move(main), bonds)
+                         : make_island(walls_[w], w, main, bonds_among(main, bonds)));
+  for (const std::uint32_t c : islands_[w].chunks) walls_[w].chunks[c].island = w;
+  if (!anchored) {
+    islands_[w].track = recorder_.add_track(kNoTrack);
+    add_body_of(w, motion_of(islands_[w]));
+  }
+  return loose;
 }
 
 Pose ImpactRun::pose_of(const Island& island) const {

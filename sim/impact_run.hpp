@@ -47,6 +47,9 @@ class ImpactRun {
     std::uint32_t island = kNoIsland;  ///< kNoIsland: the ground
     Vec3 point, normal;                ///< world; normal points to the projectile
   };
+  struct NearWall {
+    double gap = std::numeric_limits<double>::infinity(), thickness = 0;
+  };
   /// Two things came together.
   struct Meeting {
     BodyId striker = kNoBody;
@@ -82,6 +85,7 @@ class ImpactRun {
 
   // impact.cpp: set-up, time, outcome.
   void add_walls();
+  std::vector<std::vector<std::uint32_t>> add_wall(std::uint32_t wall);
   void step_once(double end);
   double next_substep(double left);
   void record(double time);
@@ -98,6 +102,8 @@ class ImpactRun {
   void launch(std::uint32_t shot);
   void refuse_overlap(const Shot& shot) const;
   double distance_limit(double dt) const;
+  NearWall nearest_wall(const RigidWorld::Bounds& bounds) const;
+  double nearest_gap(const Shot& shot) const;
   void raise_colliders(double dt);
   void raise_colliders_near(std::uint32_t wall, Vec3 low, Vec3 high);
   void raise_collider(std::uint32_t wall, std::uint32_t chunk);
@@ -118,6 +124,11 @@ class ImpactRun {
   void note_hit(const Meeting& meeting, const Answer& answer);
   std::vector<Crack> cracks(const Island& island, const Answer& answer, double footprint,
                             double budget) const;
+  std::vector<std::uint32_t> chunks_near(const Island& island, Vec2 centre, double reach) const;
+  std::vector<Crack> affordable(const Island& island, std::vector<Crack> found,
+                                double budget) const;
+  SpiderwebParams web_of(const WallState& wall, const Answer& answer, double footprint,
+                         double speed, double budget, std::uint64_t seed) const;
   void weave_web(std::uint32_t island, const Answer& answer, double footprint, double speed,
                  double budget);
   void go_through(const Meeting& meeting, const Answer& answer);
@@ -135,6 +146,7 @@ class ImpactRun {
   // islands.cpp: what hangs together, and the bodies it moves as.
   Freed break_bonds(std::uint32_t island, std::span<const Crack> cracks, std::size_t driven);
   void note_broken(std::uint32_t island, const Bond& bond);
+  void join_again(std::uint32_t island);
   Motion motion_of(const Island& island) const;
   std::uint32_t detach(std::uint32_t from, std::span<const std::uint32_t> locals,
                        const Motion& motion);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "meshing/vec.hpp"
-#include "sim/moving_body.hpp"
+#include "sim/world_body.hpp"
 
 class btSequentialImpulseConstraintSolver;
 

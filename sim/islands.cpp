@@ -49,6 +49,26 @@ void ImpactRun::note_broken(std::uint32_t index, const Bond& bond) {
   pairs.insert(std::ranges::lower_bound(pairs, pair), pair);
 }
 
+// An island whose cells were replaced: its chunks and the bonds among them that never broke.
+void ImpactRun::join_again(std::uint32_t index) {
+  const std::uint32_t wall_index = islands_[index].wall;
+  const WallState& wall = walls_[wall_index];
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t c = 0; c < wall.chunks.size(); ++c)
+    if (wall.chunks[c].island == index) members.push_back(c);
+  std::vector<Bond> bonds;
+  for (Bond bond : wall.asset.bonds) {
+    bond.a = wall.chunk_of_cell[bond.a];
+    if (bond.b != kWorld) bond.b = wall.chunk_of_cell[bond.b];
+    if (!std::ranges::binary_search(broken_pairs_[wall_index], std::pair(bond.a, bond.b)))
+      bonds.push_back(bond);
+  }
+  Island island = make_island(wall, wall_index, members, bonds_among(members, bonds));
+  island.body = islands_[index].body;
+  island.track = islands_[index].track;
+  islands_[index] = std::move(island);
+}
+
 ImpactRun::Motion ImpactRun::motion_of(const Island& island) const {
   Motion motion{walls_[island.wall].standing, {}, {}, {}};
   if (island.body == kNoBody) return motion;

@@ -19,16 +19,17 @@ class btTransform;
 namespace sunder {
 
 /// Axis-aligned box; empty at first.
-struct Extent {
+struct WorldBox {
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   void add(Vec3 point);
   void grow(double by);
 };
-bool overlap(const Extent& a, const Extent& b);
+bool overlap(const WorldBox& a, const WorldBox& b);
 
 /// A body's solid in Bullet's frame of it: a union of prisms, a ball, or the half-space y <= 0.
 class Solid {
  public:
+  struct Impl;
   Solid();  ///< the half-space
   explicit Solid(double radius);
   /// `axes`, `centre`: of Bullet's frame, in the frame of the prisms.
@@ -42,18 +43,17 @@ class Solid {
   std::uint32_t hulls() const;  ///< shapes made for it
   btCollisionShape& shape() const;
   /// Not of the half-space.
-  Extent extent(const btTransform& at) const;
+  WorldBox extent(const btTransform& at) const;
   /// Never smaller than `extent`; cheap also for many prisms.
-  Extent rough_extent(const btTransform& at) const;
+  WorldBox rough_extent(const btTransform& at) const;
 
  private:
   friend class Toucher;
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
 /// How one body moves against another.
-struct Path {
+struct RelativePath {
   Vec3 velocity, acceleration;
   double duration = 0;  ///< 0: it is not known well enough to be followed
 };
@@ -75,7 +75,7 @@ class Toucher {
   /// `path` is that of a: if one of them is a ball, far contacts are those of the moment it
   /// arrives, not of now: its normal turns on the way to a corner.
   void find(const Solid& a, const btTransform& at_a, const Solid& b, const btTransform& at_b,
-            double margin, const Path& path, std::vector<PartTouch>& found);
+            double margin, const RelativePath& path, std::vector<PartTouch>& found);
 
  private:
   struct Impl;

@@ -32,7 +32,7 @@ constexpr int kFollowSteps = 24;
 
 btVector3 bullet(Vec3 v) { return {v.x, v.y, v.z}; }
 Vec3 ours(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-btDbvtVolume volume_of(const Extent& extent) {
+btDbvtVolume volume_of(const WorldBox& extent) {
   return btDbvtVolume::FromMM(bullet(extent.low), bullet(extent.high));
 }
 
@@ -67,8 +67,8 @@ class PrismShape final : public btConvexHullShape {
 
   const btConvexPolyhedron& solid() const { return *m_polyhedron; }
 
-  Extent extent(const btTransform& at) const {
-    Extent extent;
+  WorldBox extent(const btTransform& at) const {
+    WorldBox extent;
     for (int i = 0; i < solid().m_vertices.size(); ++i) extent.add(ours(at * solid().m_vertices[i]));
     return extent;
   }
@@ -269,15 +269,15 @@ struct Create final : btCollisionAlgorithmCreateFunc {
 
 }  // namespace
 
-void Extent::add(Vec3 p) {
+void WorldBox::add(Vec3 p) {
   low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
   high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
 }
-void Extent::grow(double by) {
+void WorldBox::grow(double by) {
   low = low - Vec3{by, by, by};
   high = high + Vec3{by, by, by};
 }
-bool overlap(const Extent& a, const Extent& b) {
+bool overlap(const WorldBox& a, const WorldBox& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
          b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
@@ -333,21 +333,21 @@ btCollisionShape& Solid::shape() const {
   return impl_->whole ? *impl_->whole : *impl_->parts[0];
 }
 
-Extent Solid::extent(const btTransform& at) const {
-  Extent extent;
+WorldBox Solid::extent(const btTransform& at) const {
+  WorldBox extent;
   if (impl_->radius > 0) {
     extent.add(ours(at.getOrigin()));
     extent.grow(impl_->radius);
   }
   for (const auto& part : impl_->parts) {
-    const Extent one = part->extent(at);
+    const WorldBox one = part->extent(at);
     extent.add(one.low);
     extent.add(one.high);
   }
   return extent;
 }
 
-Extent Solid::rough_extent(const btTransform& at) const {
+WorldBox Solid::rough_extent(const btTransform& at) const {
   if (impl_->parts.size() <= 1) return extent(at);
   btVector3 low, high;
   impl_->whole->getAabb(at, low, high);
@@ -378,7 +378,7 @@ struct Toucher::Impl {
   void find_near_parts(const Placed& few, std::uint32_t part, const Placed& many, double margin,
                        std::vector<std::uint32_t>& near);
   void touch(const Placed& a, std::uint32_t i, const Placed& b, std::uint32_t j, double margin);
-  void follow(Placed a, std::uint32_t i, const Placed& b, std::uint32_t j, const Path& path);
+  void follow(Placed a, std::uint32_t i, const Placed& b, std::uint32_t j, const RelativePath& path);
 };
 
 /// Calls `visit(i, j)` for parts whose boxes are nearer than margin, in ascending order.
@@ -419,7 +419,7 @@ void Toucher::Impl::find_near_parts(const Placed& few, std::uint32_t part, const
     for (std::uint32_t j = 0; j < many.solid->parts.size(); ++j) near.push_back(j);
     return;
   }
-  Extent box;
+  WorldBox box;
   if (is_ball) {
     box.add(ours(into_many.getOrigin()));
     box.grow(few.solid->radius);
@@ -455,7 +455,7 @@ void Toucher::Impl::touch(const Placed& a, std::uint32_t i, const Placed& b, std
 /// contact now, and then that of the arrival as seen from now, or none if it misses. While the gap
 /// is above 0, the plane between the two has to be crossed first, so no step goes too far.
 void Toucher::Impl::follow(Placed a, std::uint32_t i, const Placed& b, std::uint32_t j,
-                           const Path& path) {
+                           const RelativePath& path) {
   const btVector3 start = a.at.getOrigin();
   const double first_gap = touches[0].gap;
   double time = 0;
@@ -494,7 +494,7 @@ Toucher::~Toucher() = default;
 btCollisionDispatcher& Toucher::dispatcher() { return impl_->dispatcher; }
 
 void Toucher::find(const Solid& a, const btTransform& at_a, const Solid& b,
-                   const btTransform& at_b, double margin, const Path& path,
+                   const btTransform& at_b, double margin, const RelativePath& path,
                    std::vector<PartTouch>& found) {
   const Placed placed_a{a.impl_.get(), at_a}, placed_b{b.impl_.get(), at_b};
   const bool is_round =

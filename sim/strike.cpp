@@ -4,6 +4,7 @@
 // and the energy of new cracks comes out of what the striker lost.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fracture/local_web.hpp"
 #include "meshing/elementary.hpp"
@@ -24,10 +25,6 @@ constexpr std::size_t kSmallIsland = 256;
 constexpr std::uint32_t kMostRadial = 48;
 /// What takes longer to leave its hole is held by its neighbours, s.
 constexpr double kLongestExit = 0.15;
-
-bool has_higher_utilisation(double a, std::uint32_t i, double b, std::uint32_t j) {
-  return a != b ? a > b : i < j;
-}
 
 }  // namespace
 
@@ -118,65 +115,78 @@ void ImpactRun::strike(const Meeting& m) {
   }
 }
 
+// The island's chunks that the blow may concern: all of a small one, else those around the contact.
+std::vector<std::uint32_t> ImpactRun::chunks_near(const Island& island, Vec2 centre,
+                                                  double reach) const {
+  std::vector<std::uint32_t> locals;
+  if (island.chunks.size() <= kSmallIsland) {
+    locals.resize(island.chunks.size());
+    std::iota(locals.begin(), locals.end(), 0u);
+  } else {
+    const WallState& wall = walls_[island.wall];
+    const Vec2 half{reach, reach};
+    for (const std::uint32_t cell : wall.bins.cells_in(centre - half, centre + half)) {
+      const auto at = std::ranges::lower_bound(island.chunks, wall.chunk_of_cell[cell]);
+      if (at != island.chunks.end() && *at == wall.chunk_of_cell[cell])
+        locals.push_back(static_cast<std::uint32_t>(at - island.chunks.begin()));
+    }
+  }
+  std::erase_if(locals, [&](std::uint32_t local) { return !island.graph->is_present(local); });
+  return locals;
+}
+
 // Bonds that the blow over-stresses, most over-stressed first, as far as the energy lasts. What lies
 // in the footprint is sheared out whatever its bonds' distance.
 std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answer& answer,
                                                 double footprint, double budget) const {
   const WallState& wall = walls_[island.wall];
-  const SupportGraph& graph = *island.graph;
   const double reach = std::max(answer.blow.crack_radius, footprint);
   std::vector<Crack> found;
-  const auto look_at = [&](std::uint32_t bond, bool sheared) {
-    if (!graph.is_intact(bond)) return;
-    const Vec3 c = island.bonds[bond].centroid;
-    const double distance = length(Vec2{c.x, c.y} - answer.centre);
-    const double own = distance < reach ? utilisation(answer, distance, wall) : 0;
-    const double used = sheared ? std::max(own, answer.blow.utilisation) : own;
-    if (used > 1) found.push_back({bond, used});
-  };
-  const auto look_at_chunk = [&](std::uint32_t local) {
+  for (const std::uint32_t local : chunks_near(island, answer.centre, reach)) {
     const ChunkState& chunk = wall.chunks[island.chunks[local]];
-    const bool woven = std::ranges::binary_search(woven_, island.chunks[local]);
-    const bool sheared = woven || (chunk.cell != kNoCell && footprint > 0 &&
-                                   distance_to_cell(wall.asset.pattern, chunk.cell,
-                                                    answer.centre) < footprint);
-    for (const std::uint32_t bond : graph.bonds_of(local)) look_at(bond, sheared);
-  };
-  if (island.chunks.size() <= kSmallIsland) {
-    for (std::uint32_t local = 0; local < island.chunks.size(); ++local)
-      if (graph.is_present(local)) look_at_chunk(local);
-  } else {
-    const Vec2 half{reach, reach};
-    for (const std::uint32_t cell :
-         wall.bins.cells_in(answer.centre - half, answer.centre + half)) {
-      const auto at = std::ranges::lower_bound(island.chunks, wall.chunk_of_cell[cell]);
-      if (at == island.chunks.end() || *at != wall.chunk_of_cell[cell]) continue;
-      const auto local = static_cast<std::uint32_t>(at - island.chunks.begin());
-      if (graph.is_present(local)) look_at_chunk(local);
+    const bool is_sheared = std::ranges::binary_search(woven_, island.chunks[local]) ||
+                            (chunk.cell != kNoCell && footprint > 0 &&
+                             distance_to_cell(wall.asset.pattern, chunk.cell, answer.centre) <
+                                 footprint);
+    for (const std::uint32_t bond : island.graph->bonds_of(local)) {
+      if (!island.graph->is_intact(bond)) continue;
+      const Vec3 c = island.bonds[bond].centroid;
+      const double distance = length(Vec2{c.x, c.y} - answer.centre);
+      const double own = distance < reach ? utilisation(answer, distance, wall) : 0;
+      const double used = is_sheared ? std::max(own, answer.blow.utilisation) : own;
+      if (used > 1) found.push_back({bond, used});
     }
   }
+  return affordable(island, std::move(found), budget);
+}
+
+// The most used first; a bond found from both its chunks counts once, with the larger demand.
+std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island,
+                                                    std::vector<Crack> found,
+                                                    double budget) const {
   std::ranges::sort(found, [](const Crack& a, const Crack& b) {
-    return has_higher_utilisation(a.utilisation, a.bond, b.utilisation, b.bond);
+    return a.bond != b.bond ? a.bond < b.bond : a.utilisation > b.utilisation;
   });
-  std::vector<Crack> kept;
-  for (const Crack& crack : found) {
-    if (!kept.empty() && kept.back().bond == crack.bond) continue;
-    if (std::ranges::any_of(kept, [&](const Crack& k) { return k.bond == crack.bond; })) continue;
-    budget -= wall.material.fracture_energy * island.bonds[crack.bond].area;
+  found.erase(std::ranges::unique(found, {}, &Crack::bond).begin(), found.end());
+  std::ranges::sort(found, [](const Crack& a, const Crack& b) {
+    return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
+  });
+  const double energy = walls_[island.wall].material.fracture_energy;
+  std::size_t count = 0;
+  for (; count < found.size(); ++count) {
+    budget -= energy * island.bonds[found[count].bond].area;
     if (budget < 0) break;
-    kept.push_back(crack);
   }
-  return kept;
+  found.resize(count);
+  return found;
 }
 
 // A glass-like wall gets its damage where it was hit: corners by the square root of the speed, size
 // by the reach of the bending stress, radial cracks no longer than the energy lasts.
-void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double footprint,
-                          double speed, double budget) {
-  WallState& wall = walls_[islands_[index].wall];
+SpiderwebParams ImpactRun::web_of(const WallState& wall, const Answer& answer, double footprint,
+                                  double speed, double budget, std::uint64_t seed) const {
   SpiderwebParams params = *wall.web();
   const double thickness = 2 * wall.half_thickness;
-  const std::uint64_t seed = random_bits(scene_.seed, islands_[index].wall, wall.hits);
   // Rounded up or down by chance, so that the mean over many hits is the law's.
   const double expected = radial_crack_count(speed, thickness, wall.material);
   const auto corners = static_cast<std::int64_t>(
@@ -192,43 +202,31 @@ void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double foot
       params.reach = std::min(params.reach, 0.5 * budget / energy_per_length);
     if (params.reach < 1.2 * params.max_radius) params.radial = 0;
   }
+  return params;
+}
+
+void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double footprint,
+                          double speed, double budget) {
+  const std::uint32_t wall_index = islands_[index].wall;
+  WallState& wall = walls_[wall_index];
+  const std::uint64_t seed = random_bits(scene_.seed, wall_index, wall.hits);
   std::vector<std::uint8_t> intact(wall.asset.pattern.cell_count());
   for (std::uint32_t cell = 0; cell < intact.size(); ++cell)
     intact[cell] = wall.chunks[wall.chunk_of_cell[cell]].island == index;
-  const std::uint32_t start = wall.bins.cell_at(wall.asset.pattern, answer.centre);
-  const LocalWeb web = local_web(wall.asset, intact, answer.centre, params, seed, start);
+  const LocalWeb web =
+      local_web(wall.asset, intact, answer.centre,
+                web_of(wall, answer, footprint, speed, budget, seed), seed,
+                wall.bins.cell_at(wall.asset.pattern, answer.centre));
   if (web.added.empty()) return;
-  Island& old = islands_[index];
-  for (const std::uint32_t cell : web.removed) {
-    ChunkState& chunk = wall.chunks[wall.chunk_of_cell[cell]];
-    if (chunk.collider == kNoBody) continue;
-    world_.remove(chunk.collider);
-    own(chunk.collider, {});
-    chunk.collider = kNoBody;
-  }
+  for (const std::uint32_t cell : web.removed) lower_collider(wall_index, wall.chunk_of_cell[cell]);
   const std::vector<std::uint32_t> fresh = wall.replace(web.removed, web.new_vertices, web.added);
-  woven_.clear();
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     wall.chunks[fresh[i]].island = index;
     if (web.is_damaged[i]) woven_.push_back(fresh[i]);
   }
   std::ranges::sort(woven_);
-  std::vector<std::uint32_t> members;
-  for (std::uint32_t c = 0; c < wall.chunks.size(); ++c)
-    if (wall.chunks[c].island == index) members.push_back(c);
-  std::vector<Bond> bonds;
-  for (Bond bond : wall.asset.bonds) {
-    bond.a = wall.chunk_of_cell[bond.a];
-    if (bond.b != kWorld) bond.b = wall.chunk_of_cell[bond.b];
-    if (!std::ranges::binary_search(broken_pairs_[old.wall], std::pair(bond.a, bond.b)))
-      bonds.push_back(bond);
-  }
-  const std::uint32_t wall_index = old.wall, track = old.track;
-  const BodyId body = old.body;
-  islands_[index] = make_island(wall, wall_index, members, bonds_among(members, bonds));
-  islands_[index].body = body;
-  islands_[index].track = track;
-  if (!params_.skip && body == kNoBody)
+  join_again(index);
+  if (!params_.skip && islands_[index].body == kNoBody)
     for (const std::uint32_t chunk : fresh) raise_collider(wall_index, chunk);
 }
 

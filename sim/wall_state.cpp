@@ -72,6 +72,17 @@ MassProperties prism_mass(std::span<const Vec2> p, double thickness) {
   return m;
 }
 
+/// Convex with room to spare, and not a splinter.
+bool is_sturdy(std::span<const Vec2> polygon, double least) {
+  if (!(polygon_area(polygon) >= least * least)) return false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    const Vec2 c = polygon[(i + 2) % polygon.size()];
+    if (!(cross(b - a, c - b) > 1e-9 * length(b - a) * length(c - b))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 CellBins::CellBins(const Pattern& pattern) {
@@ -231,56 +242,53 @@ std::vector<std::uint32_t> WallState::replace(std::span<const std::uint32_t> rem
   return fresh;
 }
 
+std::vector<std::uint32_t> WallState::outline_of(const ChunkState& state) const {
+  if (state.cell == kNoCell) return state.loop;
+  if (!is_strictly_convex(asset.pattern, state.cell)) return {};
+  const auto begin = asset.pattern.corners.begin() + asset.pattern.cell_begin[state.cell];
+  return {begin, asset.pattern.corners.begin() + asset.pattern.cell_begin[state.cell + 1]};
+}
+
+std::vector<Vec2> WallState::places(std::span<const std::uint32_t> loop) const {
+  std::vector<Vec2> result;
+  for (const std::uint32_t v : loop) result.push_back(place(v));
+  return result;
+}
+
 std::vector<std::uint32_t> WallState::split(std::uint32_t chunk, Vec2 point, std::uint32_t count) {
-  const ChunkState parent = chunks[chunk];
-  std::vector<std::uint32_t> loop = parent.loop;
-  if (parent.cell != kNoCell) {
-    if (!is_strictly_convex(asset.pattern, parent.cell)) return {};
-    for (std::uint32_t k = asset.pattern.cell_begin[parent.cell];
-         k < asset.pattern.cell_begin[parent.cell + 1]; ++k)
-      loop.push_back(asset.pattern.corners[k]);
-  }
+  const std::vector<std::uint32_t> loop = outline_of(chunks[chunk]);
   const auto centre = static_cast<std::uint32_t>(split_points.size()) | kSplitPoint;
-  split_points.push_back(rounded_to_float(point));
+  const Vec2 middle = rounded_to_float(point);
+  const std::vector<std::uint32_t> spokes = choose_spokes(places(loop), middle, count);
+  if (spokes.empty()) return {};
+  split_points.push_back(middle);
   const double least = std::max(kLeastPart, 0.1 * half_thickness);
   std::vector<std::vector<std::uint32_t>> parts;
-  std::vector<Vec2> outline;
-  for (const std::uint32_t v : loop) outline.push_back(place(v));
-  const std::vector<std::uint32_t> spokes = choose_spokes(outline, place(centre), count);
   for (std::size_t s = 0; s < spokes.size(); ++s) {
     std::vector<std::uint32_t> part{centre};
-    std::vector<Vec2> places{place(centre)};
     const std::size_t end = s + 1 < spokes.size() ? spokes[s + 1] : spokes[0] + loop.size();
-    for (std::size_t i = spokes[s]; i <= end; ++i) {
-      part.push_back(loop[i % loop.size()]);
-      places.push_back(place(part.back()));
-    }
-    // Convex at the point too, and not a splinter.
-    bool good = polygon_area(places) >= least * least;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const Vec2 a = places[i], b = places[(i + 1) % places.size()];
-      const Vec2 c = places[(i + 2) % places.size()];
-      good &= cross(b - a, c - b) > 1e-9 * length(b - a) * length(c - b);
-    }
-    if (!good) {
+    for (std::size_t i = spokes[s]; i <= end; ++i) part.push_back(loop[i % loop.size()]);
+    if (!is_sturdy(places(part), least)) {
       split_points.pop_back();
       return {};
     }
     parts.push_back(std::move(part));
   }
-  if (parts.empty()) split_points.pop_back();
+  return add_parts(chunk, parts);
+}
+
+std::vector<std::uint32_t> WallState::add_parts(
+    std::uint32_t chunk, std::span<const std::vector<std::uint32_t>> parts) {
   std::vector<std::uint32_t> made;
-  for (std::vector<std::uint32_t>& part : parts) {
-    std::vector<Vec2> places;
-    for (const std::uint32_t v : part) places.push_back(place(v));
+  for (const std::vector<std::uint32_t>& part : parts) {
     ChunkState state;
-    state.mass = prism_mass(places, 2 * half_thickness);
-    state.loop = std::move(part);
-    state.depth = static_cast<std::uint8_t>(parent.depth + 1);
+    state.mass = prism_mass(places(part), 2 * half_thickness);
+    state.loop = part;
+    state.depth = static_cast<std::uint8_t>(chunks[chunk].depth + 1);
     made.push_back(static_cast<std::uint32_t>(chunks.size()));
     chunks.push_back(std::move(state));
   }
-  if (!made.empty()) chunks[chunk].island = kNoIsland;
+  chunks[chunk].island = kNoIsland;
   return made;
 }
 

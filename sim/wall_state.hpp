@@ -88,6 +88,11 @@ struct WallState {
   /// Splits a free, convex chunk around a point inside it into `count` parts at most; empty if it
   /// cannot be split there.
   std::vector<std::uint32_t> split(std::uint32_t chunk, Vec2 point, std::uint32_t count);
+  /// Vertices of a convex chunk, counter-clockwise; empty for another.
+  std::vector<std::uint32_t> outline_of(const ChunkState& state) const;
+  std::vector<Vec2> places(std::span<const std::uint32_t> loop) const;
+  std::vector<std::uint32_t> add_parts(std::uint32_t chunk,
+                                       std::span<const std::vector<std::uint32_t>> parts);
   /// The wall with all parts in the place of what they came from, and each chunk's island.
   RecordedWall recorded(const std::function<std::uint32_t(std::uint32_t)>& track_of) const;
 };

@@ -38,7 +38,7 @@ struct Body {
 
   // Of the step in progress.
   Vec3 velocity_before, spin_before;
-  Extent swept;             ///< wherever it may be during the step
+  WorldBox swept;             ///< wherever it may be during the step
   double contact_time = 0;  ///< since the start of the step: its impulses act then
   bool arrives = false;     ///< contact_time is that of an impact
   std::uint32_t slot = 0;   ///< 0: does not move, or has no contact

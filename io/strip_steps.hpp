@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/recording.hpp"
+
+namespace sunder {
+
+/// Steps that a strip of at most `frames` pictures shows, ascending: the last before anything
+/// breaks; one 0.06 s after each hit, a projectile's first break of a wall (hits less than 0.1 s
+/// apart share one, and some are left out where frames are few); the others at intervals that grow
+/// in proportion after the hit before; at the end the one at which nearly all chunks rest. A single
+/// picture is that of the first hit. Where nothing breaks or moves, evenly over the recording.
+std::vector<std::uint32_t> strip_steps(const Recording& recording, int frames);
+
+}  // namespace sunder
