@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "io/strip_scene.hpp"
 #include "meshing/trig.hpp"
 
 namespace sunder {
@@ -55,7 +56,7 @@ double debris_side(const Recording& recording, const RecordedWall& wall, std::ui
   return sum > 0 ? 1 : sum < 0 ? -1 : 0;
 }
 
-// Adds a wall, the ground below it, and there the place where chunks come down.
+// Adds a wall, the ground below it, and as far out as is shown the height of the wall's foot.
 void frame_wall(const WallAsset& asset, double side, std::optional<double> ground,
                 std::vector<Vec3>& points) {
   const Box box = bounding_box(asset.wall.region.outline);
@@ -70,7 +71,7 @@ void frame_wall(const WallAsset& asset, double side, std::optional<double> groun
   for (const Vec3 p : corners) {
     points.push_back(p);
     points.push_back({p.x, floor, p.z});
-    points.push_back({p.x + out.x, floor, p.z + out.z});
+    points.push_back({p.x + out.x, lowest.y, p.z + out.z});
   }
 }
 
@@ -140,6 +141,7 @@ StripCamera fitted(Vec3 back, std::span<const Vec3> points) {
 }
 
 bool is_hidden_by(const WallAsset& wall, Vec3 eye, Vec3 point) {
+  if (is_glass(wall.wall.material)) return false;
   const Pose back = inverse({wall.wall.position, wall.wall.rotation});
   const Vec3 a = back * eye, b = back * point;
   if ((a.z > 0) == (b.z > 0)) return false;
@@ -181,7 +183,8 @@ StripCamera place_camera(const Recording& recording, std::span<const std::uint32
   const Interest interest = find_interest(recording, steps, ground);
   Vec3 normal{0, 0, 1};
   if (const RecordedWall* wall = most_broken(recording)) {
-    normal = rotate(wall->asset.wall.rotation, {0, 0, 1});
+    const double side = debris_side(recording, *wall, steps.back());
+    normal = rotate(wall->asset.wall.rotation, {0, 0, side < 0 ? -1.0 : 1.0});
   }
   normal.y = 0;
   normal = length(normal) > 0.2 ? unit(normal) : Vec3{0, 0, 1};  // a slab: any side will do
@@ -190,7 +193,7 @@ StripCamera place_camera(const Recording& recording, std::span<const std::uint32
   StripCamera best;
   double most = -1;
   for (const double side : {1.0, -1.0}) {
-    for (const double hand : {1.0, -1.0}) {
+    for (const double hand : {-1.0, 1.0}) {  // chunks that leave the wall go right, or left
       const Vec3 flat = side * turn.x * normal + hand * turn.y * along;
       const StripCamera camera = fitted(rise.x * flat + Vec3{0, rise.y, 0}, interest.frame);
       const double seen = visibility(recording, camera, interest);

@@ -34,10 +34,9 @@ struct StripCamera {
 
 /// One camera for all steps of a strip. It stands on the side of the most broken wall from which
 /// more of the moving chunks are seen past the standing walls, 40° off the wall's normal, and so
-/// near that the walls and what happens close to them fill the picture: a box that is deeper than
-/// the wall by 0.6 of its width or height, on the side that chunks leave by, and stands on the
-/// ground (m, none: it is not shown) if the wall is not farther above it than it is high. What
-/// flies beyond is cut off.
+/// near that the walls and what happens close to them fill the picture: 0.6 of a wall's width or
+/// height (the smaller) on the side that chunks leave by, and the ground below it (at a height in
+/// m; none: not shown) if that is no farther than the wall is high. What flies beyond is cut off.
 StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps,
                          std::optional<double> ground = {});
 

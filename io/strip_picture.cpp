@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "io/strip_camera.hpp"
@@ -22,12 +24,12 @@ StripColour colour_of(const std::array<std::uint8_t, 3>& rgb) {
 
 struct Look {
   StripColour outer, inner;
-  bool is_glass = false;
+  bool is_glass = false, is_cracked = false;  // cracked: something of the wall has broken
 };
 
 Look strip_look(const std::string& material) {
   const MaterialLook look = look_of(material);
-  return {colour_of(look.outer), colour_of(look.inner), material.starts_with("glass")};
+  return {colour_of(look.outer), colour_of(look.inner), is_glass(material)};
 }
 
 // Light from a sun and, from above more than from below, from the sky.
@@ -39,6 +41,12 @@ StripColour shaded(const StripColour& base, Vec3 normal, Vec3 light) {
   StripColour result;
   for (std::size_t i = 0; i < 3; ++i) result[i] = base[i] * strength * tint[i];
   return result;
+}
+
+// A stroke in a face's own colour, so that nothing shines through where it meets the next one.
+std::string_view closed(const ChunkPlace& place) {
+  return place.track == kNoTrack ? R"(" stroke-opacity="1" stroke-width="22)"
+                                 : R"(" stroke-opacity="1)";
 }
 
 // A solid, and what is needed to draw it.
@@ -62,6 +70,10 @@ class Picture {
         places.push_back(place_of(scene_.recording, wall, c, step_));
       }
       looks_.push_back(strip_look(wall.asset.wall.material));
+    }
+    for (const BreakEvent& event : scene_.recording.events) {
+      const bool has_happened = event.time <= scene_.recording.times[step_];
+      if (has_happened && event.wall < looks_.size()) looks_[event.wall].is_cracked = true;
     }
     for (const StripPart& part : scene_.parts) add_part(part);
     for (const RecordedProjectile& projectile : scene_.recording.projectiles) add_ball(projectile);
@@ -87,8 +99,11 @@ class Picture {
   void draw_shadows();
   void draw_run(std::span<const std::uint32_t> run);
   void draw_sides(const StripSolid& solid, const Item& item);
+  StripColour cap_colour(std::uint32_t i) const;
+  std::string caps_of(std::span<const std::uint32_t> run) const;
   void draw_caps(std::span<const std::uint32_t> run);
-  void draw_seams(std::span<const std::uint32_t> run, bool are_open);
+  std::string lines_of(std::span<const std::uint32_t> run, bool are_open) const;
+  void draw_glass_caps(std::span<const std::uint32_t> run);
   void draw_ball(const Item& item);
   std::vector<Vec2> cap_of(const Item& item) const;
 
@@ -270,7 +285,7 @@ void Picture::draw_sides(const StripSolid& solid, const Item& item) {
     out_.text("<path fill=\"").colour(colour);
     // No lines across the narrow sides of a standing wall.
     if (is_border && place(*item.part).track == kNoTrack) {
-      out_.text("\" stroke=\"").colour(colour).text(R"(" stroke-opacity="1)");
+      out_.text("\" stroke=\"").colour(colour).text(closed(place(*item.part)));
     }
     out_.text(look.is_glass ? R"(" fill-opacity=".7" d=")" : R"(" d=")");
     const Vec2 quad[] = {item.picture[i], item.picture[next], item.picture[count + next],
@@ -280,34 +295,26 @@ void Picture::draw_sides(const StripSolid& solid, const Item& item) {
   }
 }
 
-void Picture::draw_caps(std::span<const std::uint32_t> run) {
-  const Item& first = items_[run[0]];
-  const Look& look = looks_[first.part->wall];
-  const Vec3 normal = rotate(solids_[run[0]].pose.rotation, {0, 0, first.cap > 0 ? 1.0 : -1.0});
-  const StripColour colour = shaded(look.outer, normal, scene_.camera.light);
-  out_.text("<path fill=\"").colour(colour);
-  if (look.is_glass) {
-    out_.text(R"(" fill-opacity=".34" stroke="none)");
-  } else {
-    out_.text("\" stroke=\"").colour(colour).text(R"(" stroke-opacity="1)");
-  }
-  out_.text("\" d=\"");
+StripColour Picture::cap_colour(std::uint32_t i) const {
+  const Vec3 normal = rotate(solids_[i].pose.rotation, {0, 0, items_[i].cap > 0 ? 1.0 : -1.0});
+  return shaded(looks_[items_[i].part->wall].outer, normal, scene_.camera.light);
+}
+
+std::string Picture::caps_of(std::span<const std::uint32_t> run) const {
+  StripPaper paper;
   for (const std::uint32_t i : run) {
-    if (items_[i].cap != 0) out_.line(cap_of(items_[i]), true);
+    if (items_[i].cap != 0) paper.line(cap_of(items_[i]), true);
   }
-  out_.text("\"/>");
+  return paper.take();
 }
 
 // Edges of the caps: open ones (cracks, borders), or those between chunks of one body. Chunks that
 // share an edge both draw it: the later one has painted over half of it.
-void Picture::draw_seams(std::span<const std::uint32_t> run, bool are_open) {
-  bool any = false;
+std::string Picture::lines_of(std::span<const std::uint32_t> run, bool are_open) const {
+  StripPaper paper;
   std::vector<Vec2> line;
   const auto end_line = [&] {
-    if (line.empty()) return;
-    if (!any) out_.text(are_open ? "<path fill=\"none\" d=\"" : "<path class=\"seam\" d=\"");
-    any = true;
-    out_.line(line, false);
+    if (!line.empty()) paper.line(line, false);
     line.clear();
   };
   for (const std::uint32_t i : run) {
@@ -324,7 +331,38 @@ void Picture::draw_seams(std::span<const std::uint32_t> run, bool are_open) {
     }
     end_line();
   }
-  if (any) out_.text("\"/>");
+  return paper.take();
+}
+
+// Chunks of one body show no lines between them, unless they are of glass.
+void Picture::draw_caps(std::span<const std::uint32_t> run) {
+  const Item& first = items_[run[0]];
+  const StripColour colour = cap_colour(run[0]);
+  out_.text("<path fill=\"").colour(colour);
+  const bool is_whole = run.size() == 1 && std::ranges::all_of(first.open, std::identity());
+  if (!is_whole) out_.text("\" stroke=\"").colour(colour).text(closed(place(*first.part)));
+  out_.text("\" d=\"").text(caps_of(run)).text("\"/>");
+  if (is_whole) return;
+  const std::string open = lines_of(run, true);
+  if (!open.empty()) out_.text("<path fill=\"none\" d=\"").text(open).text("\"/>");
+}
+
+// Without antialiasing: neighbours that are seen through would show a line where they meet.
+void Picture::draw_glass_caps(std::span<const std::uint32_t> run) {
+  const StripPart& part = *items_[run[0]].part;
+  if (place(part).track == kNoTrack) {
+    out_.text("<path class=\"pane\" fill=\"url(#glass").integer(part.wall).text(")");
+  } else {
+    out_.text("<path class=\"shard\" fill=\"").colour(cap_colour(run[0]));
+  }
+  out_.text("\" d=\"").text(caps_of(run)).text("\"/>");
+  const auto draw = [this](std::string_view shape, const std::string& lines) {
+    if (lines.empty()) return;
+    out_.text("<path class=\"").text(shape).text("\" d=\"").text(lines).text("\"/>");
+    out_.text("<path class=\"glint\" d=\"").text(lines).text("\"/>");
+  };
+  if (looks_[part.wall].is_cracked) draw("crack", lines_of(run, false));
+  draw("edge", lines_of(run, true));
 }
 
 void Picture::draw_ball(const Item& item) {
@@ -341,19 +379,10 @@ void Picture::draw_run(std::span<const std::uint32_t> run) {
   if (!is_seen) return;
   if (run.size() == 1) draw_sides(solids_[run[0]], first);
   if (first.cap != 0) {
-    const bool is_whole =
-        run.size() == 1 && std::ranges::all_of(first.open, [](bool o) { return o; });
-    if (is_whole && !looks_[first.part->wall].is_glass) {
-      const Vec3 normal = rotate(solids_[run[0]].pose.rotation, {0, 0, first.cap > 0 ? 1.0 : -1.0});
-      out_.text("<path fill=\"")
-          .colour(shaded(looks_[first.part->wall].outer, normal, scene_.camera.light));
-      out_.text("\" d=\"");
-      out_.line(cap_of(first), true);
-      out_.text("\"/>");
+    if (looks_[first.part->wall].is_glass) {
+      draw_glass_caps(run);
     } else {
       draw_caps(run);
-      draw_seams(run, false);
-      draw_seams(run, true);
     }
   }
   out_.text("\n");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fracture/chunk_mesh.hpp"
+#include "io/wall_view.hpp"
 
 namespace sunder {
 namespace {
@@ -51,7 +52,45 @@ void draw_grid(const StripScene& scene, StripPaper& out) {
   out.text("\"/>\n");
 }
 
+// A pane's tint with the sky's reflection across it, from corner to corner of its picture.
+void draw_glass(const StripScene& scene, std::uint32_t w, StripPaper& out) {
+  const WallAsset& asset = scene.recording.walls[w].asset;
+  const Pose pose{asset.wall.position, asset.wall.rotation};
+  Box box{{1e300, 1e300}, {-1e300, -1e300}};
+  for (const Vec2 corner : asset.wall.region.outline) {
+    const Vec3 seen = scene.camera.see(pose * Vec3{corner.x, corner.y, 0});
+    if (!(seen.z > scene.camera.nearest)) continue;
+    const Vec2 p = scene.camera.project(seen);
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
+  }
+  if (box.low.x > box.high.x) box = {{0, 0}, {kStripWidth, kStripHeight}};
+  const auto rgb = look_of(asset.wall.material).outer;
+  const StripColour tint{0.82 * rgb[0], 0.93 * rgb[1], 0.93 * rgb[2]};
+  out.text("<linearGradient id=\"glass")
+      .integer(w)
+      .text("\" gradientUnits=\"userSpaceOnUse\" x1=\"");
+  out.number(box.low.x).text("\" y1=\"").number(box.low.y);
+  out.text("\" x2=\"").number(box.high.x).text("\" y2=\"").number(box.high.y).text("\">");
+  struct Stop {
+    double at, white, opacity;
+  };
+  constexpr Stop kStops[] = {{0, 0.35, 0.62},    {0.28, 0.1, 0.5}, {0.3, 0.75, 0.6},
+                             {0.42, 0.65, 0.55}, {0.44, 0.1, 0.5}, {1, 0, 0.62}};
+  for (const Stop& stop : kStops) {
+    out.text("<stop offset=\"").number(stop.at).text("\" stop-color=\"");
+    out.colour(mix_colours(tint, {255, 255, 255}, stop.white));
+    out.text("\" stop-opacity=\"").number(stop.opacity).text("\"/>");
+  }
+  out.text("</linearGradient>\n");
+}
+
 }  // namespace
+
+bool is_glass(std::string_view material) {
+  return material.find("glass") != std::string_view::npos ||
+         material.find("pmma") != std::string_view::npos;
+}
 
 std::vector<StripPart> strip_parts(const Recording& recording) {
   std::vector<StripPart> parts;
@@ -84,6 +123,9 @@ void draw_strip_defs(const StripScene& scene, StripPaper& out) {
   const StripCamera& camera = scene.camera;
   gradient(out, "sky", kSkyTop, kSkyLow);
   gradient(out, "land", kGroundFar, kGroundNear);
+  for (std::uint32_t w = 0; w < scene.recording.walls.size(); ++w) {
+    if (is_glass(scene.recording.walls[w].asset.wall.material)) draw_glass(scene, w, out);
+  }
   out.text(R"(<radialGradient id="ball" cx=".36" cy=".3" r=".75"><stop stop-color="#e8ebee"/>)");
   out.text(R"(<stop offset=".35" stop-color="#9aa1a9"/><stop offset="1" stop-color="#33383e"/>)");
   out.text("</radialGradient>\n");

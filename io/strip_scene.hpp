@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "io/strip_camera.hpp"
@@ -20,6 +21,9 @@ struct StripPart {
 };
 std::vector<StripPart> strip_parts(const Recording& recording);
 
+/// Whether a material is seen through: its name has "glass" or "pmma" in it.
+bool is_glass(std::string_view material);
+
 /// What all pictures of a strip share.
 struct StripScene {
   const Recording& recording;
@@ -28,7 +32,7 @@ struct StripScene {
   StripCamera camera;
 };
 
-/// Gradients, filters and the empty scenery, inside a <defs>.
+/// Gradients (of glass walls: "glass0", by wall), filters and the empty scenery, inside a <defs>.
 void draw_strip_defs(const StripScene& scene, StripPaper& paper);
 
 }  // namespace sunder

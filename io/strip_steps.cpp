@@ -11,16 +11,17 @@
 namespace sunder {
 namespace {
 
-constexpr double kAfterHit = 0.06;  // s, when a hit is shown
-constexpr double kTogether = 0.1;   // s, hits closer than this share a picture
+constexpr double kAfterHit = 0.09;  // s, when a hit is shown
+constexpr double kLeast = 0.06;     // s, when the last of several is
+constexpr double kTogether = 0.08;  // s, hits closer than this share a picture
 constexpr double kSettle = 0.5;     // s, shown after the last hit even if nothing moves any more
 constexpr double kAtRest = 0.95;    // share of the moving chunks that rest at the last picture
 
 // The first step at or after a time, or the last one.
 std::uint32_t step_at(const Recording& recording, double time) {
   const auto next = std::ranges::lower_bound(recording.times, time - 1e-12);
-  return static_cast<std::uint32_t>(
-      std::min(next, recording.times.end() - 1) - recording.times.begin());
+  return static_cast<std::uint32_t>(std::min(next, recording.times.end() - 1) -
+                                    recording.times.begin());
 }
 
 // Steps at which the first chunk begins to move and nearly all have come to rest; empty if none
@@ -47,7 +48,7 @@ struct Act {
   double end = 0;              // s, of the next act's first hit or of the recording's motion
   int pictures = 1, intervals = 1;
 
-  double offset() const { return std::max(kAfterHit, last - first + 0.5 * kTogether); }
+  double offset() const { return std::max(kAfterHit, last - first + kLeast); }
   double growth() const {  // log of the factor from one picture's time to the next one's
     return log_of(std::max(1.0, (end - first) / offset())) / intervals;
   }
@@ -113,8 +114,8 @@ std::vector<std::uint32_t> even_steps(const Recording& recording, int frames) {
   std::vector<std::uint32_t> steps;
   for (int i = 0; i < frames; ++i) {
     const double t = frames > 1 ? static_cast<double>(i) / (frames - 1) : 0.5;
-    steps.push_back(step_at(recording, recording.times[0] + t * (recording.times.back() -
-                                                                recording.times[0])));
+    steps.push_back(
+        step_at(recording, recording.times[0] + t * (recording.times.back() - recording.times[0])));
   }
   return steps;
 }
@@ -146,9 +147,8 @@ std::vector<std::uint32_t> eventful_steps(const Recording& recording, std::vecto
 std::vector<std::uint32_t> strip_steps(const Recording& recording, int frames) {
   const TimeRange moving = moving_steps(recording);
   const std::vector<Act> acts = find_acts(recording, moving);
-  std::vector<std::uint32_t> steps = acts.empty()
-                                         ? even_steps(recording, frames)
-                                         : eventful_steps(recording, acts, moving, frames);
+  std::vector<std::uint32_t> steps = acts.empty() ? even_steps(recording, frames)
+                                                  : eventful_steps(recording, acts, moving, frames);
   std::ranges::sort(steps);
   const auto repeated = std::ranges::unique(steps);
   steps.erase(repeated.begin(), repeated.end());

@@ -9,7 +9,7 @@
 namespace sunder {
 
 /// Steps that a strip of at most `frames` pictures shows, ascending: the last before anything
-/// breaks; one 0.06 s after each hit, a projectile's first break of a wall (hits less than 0.1 s
+/// breaks; one 0.09 s after each hit, a projectile's first break of a wall (hits less than 0.08 s
 /// apart share one, and some are left out where frames are few); the others at intervals that grow
 /// in proportion after the hit before; at the end the one at which nearly all chunks rest. A single
 /// picture is that of the first hit. Where nothing breaks or moves, evenly over the recording.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include "io/strip_camera.hpp"
 #include "io/strip_paper.hpp"
@@ -16,6 +17,13 @@ namespace {
 
 constexpr std::size_t kColumns = 3;
 constexpr double kGap = 100;  // between pictures, picture units
+// Cracks and edges of glass: a dark line with a bright one in it.
+constexpr std::string_view kGlassStyle =
+    ".pane{stroke:none;shape-rendering:crispEdges}"
+    ".shard{stroke:none;fill-opacity:.6;shape-rendering:crispEdges}"
+    ".crack{fill:none;stroke:#23494d;stroke-opacity:.75;stroke-width:15}"
+    ".edge{fill:none;stroke:#23494d;stroke-opacity:.85;stroke-width:20}"
+    ".glint{fill:none;stroke:#f4ffff;stroke-opacity:.9;stroke-width:7}";
 
 // Time in seconds, with a digit more where pictures would have the same one.
 std::string label_of(double time, int digits) {
@@ -51,7 +59,7 @@ void draw_page(const StripScene& scene, const std::vector<std::uint32_t>& steps,
   paper.text("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ").number(width);
   paper.text(" ").number(height).text("\" width=\"").number(width / 20);
   paper.text("\" height=\"").number(height / 20).text("\">\n");
-  paper.text("<style>.seam{fill:none;stroke-opacity:.09}</style>\n<defs>\n");
+  paper.text("<style>").text(kGlassStyle).text("</style>\n<defs>\n");
   draw_strip_defs(scene, paper);
   paper.text("</defs>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
   const std::vector<std::string> labels = labels_of(scene.recording, steps);

@@ -12,6 +12,7 @@
 #include "io/strip_camera.hpp"
 #include "io/strip_order.hpp"
 #include "io/strip_scene.hpp"
+#include "io/strip_steps.hpp"
 #include "io/strip_svg.hpp"
 
 namespace sunder {
@@ -39,16 +40,82 @@ TEST(StripSteps, BeginBeforeTheBreakAndGrowApart) {
     first = std::min(first, moving_range(recording, track).first);
     last = std::max(last, moving_range(recording, track).end - 1);
   }
-  EXPECT_EQ(steps.front(), first - 1);
+  EXPECT_LT(steps.front(), first);
+  EXPECT_EQ(recording.times[steps.front() + 1], recording.events[0].time);
   EXPECT_LE(steps.back(), last);
-  for (std::size_t i = 2; i < steps.size(); ++i) {
+  for (std::size_t i = 3; i < steps.size(); ++i) {
     EXPECT_GT(steps[i] - steps[i - 1], steps[i - 1] - steps[i - 2]);
   }
+  const double hit = recording.events[0].time;
+  const auto is_soon = [&](std::uint32_t step) { return recording.times[step] < hit + 0.5; };
+  EXPECT_GE(std::ranges::count_if(steps, is_soon), 4);
+}
+
+// The sample with balls that hit it at these times, each followed by chunks that break again and by
+// more of the wall.
+Recording sample_with_hits(const std::vector<double>& hits) {
+  Recording recording = sample();
+  const Projectile ball = recording.projectiles[0].projectile;
+  recording.projectiles.clear();
+  recording.events.clear();
+  for (std::size_t h = 0; h < hits.size(); ++h) {
+    const double x = 0.6 + 0.7 * static_cast<double>(h);
+    Projectile projectile = ball;
+    projectile.name = "ball" + std::to_string(h);
+    projectile.time = hits[h] - 0.01;
+    projectile.position = {x, 1.5, 0.4};
+    recording.projectiles.push_back({projectile, kNoTrack});
+    recording.events.push_back({hits[h], 0, {x, 1.5, 0.1}, 10, 3, 20, 9});
+    recording.events.push_back({hits[h] + 0.06, 0, {x, 0, -1}, 2, 1, 0, 3});
+    recording.events.push_back({hits[h] + 0.07, 0, {x, 1.8, 0.1}, 2, 1, 2, 1});
+  }
+  std::ranges::stable_sort(recording.events, {}, &BreakEvent::time);
+  return recording;
+}
+
+bool is_shown(const Recording& recording, const std::vector<std::uint32_t>& steps, double hit) {
+  return std::ranges::any_of(steps, [&](std::uint32_t step) {
+    const double later = recording.times[step] - hit;
+    return later > 0.05 && later < 0.15;
+  });
+}
+
+TEST(StripSteps, ShowEachHitShortlyAfterIt) {
+  const std::vector<double> lists[] = {
+      {0.2}, {0.2, 0.7, 1.2}, {0.2, 0.35, 1.4}, {0.2, 0.25}, {0.2, 0.29, 0.31, 1.7}};
+  for (const std::vector<double>& hits : lists) {
+    const Recording recording = sample_with_hits(hits);
+    for (int frames = static_cast<int>(hits.size()) + 2; frames < 15; ++frames) {
+      const std::vector<std::uint32_t> steps = strip_steps(recording, frames);
+      EXPECT_LE(steps.size(), static_cast<std::size_t>(frames));
+      EXPECT_LT(recording.times[steps[0]], hits[0]);
+      for (const double hit : hits) {
+        EXPECT_TRUE(is_shown(recording, steps, hit))
+            << hits.size() << " hits, " << frames << " frames, hit at " << hit << " s";
+      }
+    }
+  }
+}
+
+TEST(StripSteps, LeaveHitsOutWhereFramesAreFewButNeverTheStartAndTheEnd) {
+  const Recording recording = sample_with_hits({0.2, 0.7, 1.2});
+  const std::vector<std::uint32_t> one = strip_steps(recording, 1);
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_TRUE(is_shown(recording, one, 0.2));
+  const std::vector<std::uint32_t> six = strip_steps(recording, 6);
+  for (const int frames : {2, 3, 4}) {
+    const std::vector<std::uint32_t> steps = strip_steps(recording, frames);
+    ASSERT_EQ(steps.size(), static_cast<std::size_t>(frames));
+    EXPECT_EQ(steps.front(), six.front());
+    EXPECT_EQ(steps.back(), six.back());
+  }
+  EXPECT_TRUE(is_shown(recording, strip_steps(recording, 3), 0.2));
 }
 
 TEST(StripSteps, AreEvenWhereNothingBreaksAndNeverTwiceTheSame) {
   Recording recording = sample();
   std::ranges::fill(recording.walls[0].track, kNoTrack);
+  recording.events.clear();
   EXPECT_EQ(
       strip_steps(recording, 2),
       (std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(recording.times.size()) - 1}));
@@ -241,6 +308,44 @@ TEST(StripCamera, MovesWithTheScene) {
   EXPECT_NEAR(length(rotate(pose.rotation, a.back) - b.back), 0, 1e-12);
 }
 
+// Height of the first wall's upright edges in the picture, as shares of the picture's.
+std::vector<double> heights_of(const Recording& recording, std::optional<double> ground) {
+  const Wall& wall = recording.walls[0].asset.wall;
+  const StripCamera camera = place_camera(recording, strip_steps(recording, 6), ground);
+  const Box box = bounding_box(wall.region.outline);
+  const Pose pose{wall.position, wall.rotation};
+  std::vector<double> heights;
+  for (const double x : {box.low.x, box.high.x}) {
+    const Vec2 top = camera.project(camera.see(pose * Vec3{x, box.high.y, 0}));
+    const Vec2 foot = camera.project(camera.see(pose * Vec3{x, box.low.y, 0}));
+    heights.push_back((foot.y - top.y) / kStripHeight);
+  }
+  return heights;
+}
+
+TEST(StripCamera, StandsAsNearHoweverFarChunksAndBallsFly) {
+  const WallAsset wall = sample_wall("facade", 6, 6);
+  const auto heights = [&](double speed) {
+    return heights_of(sample_recording({wall}, {.hit = {1.5, 1.5}, .speed = speed}), 0.0);
+  };
+  for (const double height : heights(10)) EXPECT_GT(height, 0.55);
+  EXPECT_EQ(heights(10), heights(80));
+}
+
+TEST(StripCamera, ShowsTheGroundBelowAWallThatIsNear) {
+  WallAsset wall = sample_wall("pane", 4, 3);  // 1.5 m high
+  const auto ground_in_picture = [&](double height) {
+    wall.wall.position.y = height;
+    const Recording recording = sample_recording({wall}, {.hit = {1, 0.75}, .radius = 0.6});
+    const StripCamera camera = place_camera(recording, strip_steps(recording, 6), 0.0);
+    return camera.project(camera.see({1, 0, 0})).y / kStripHeight;
+  };
+  EXPECT_LT(ground_in_picture(0), 1);
+  EXPECT_LT(ground_in_picture(1), 1);
+  EXPECT_GT(ground_in_picture(1), 0.8);
+  EXPECT_GT(ground_in_picture(2), 1);
+}
+
 TEST(StripParts, TileEveryChunkWithItsEdges) {
   WallAsset wall = sample_wall("facade", 12, 6);
   Recording recording = sample_recording({wall});
@@ -282,6 +387,68 @@ TEST(Strip, AStandingWallShowsNoBrokenFaces) {
   // show nothing else: far fewer paths than chunks.
   EXPECT_LT(count_of(svg, "<path"), 2u * (12 + 6) * 3);
   EXPECT_EQ(count_of(svg, "<circle"), 0u);
+}
+
+// Segments of the lines that paths of a kind draw.
+std::size_t segments_of(const std::string& svg, const std::string& opening) {
+  std::size_t found = 0;
+  for (std::size_t at = svg.find(opening); at != std::string::npos;
+       at = svg.find(opening, at + 1)) {
+    const std::size_t begin = at + opening.size();
+    found += count_of(svg.substr(begin, svg.find('"', begin) - begin), "l");
+  }
+  return found;
+}
+
+TEST(Strip, AStandingOpaqueWallShowsItsBorderAndNoSeams) {
+  Recording recording = sample();
+  std::ranges::fill(recording.walls[0].track, kNoTrack);
+  const std::string svg = draw_strip(recording, {.frames = 1});
+  EXPECT_EQ(segments_of(svg, "<path fill=\"none\" d=\""), 2u * (12 + 6));
+  EXPECT_EQ(count_of(svg, "class=\"crack\""), 0u);
+}
+
+std::vector<std::string> pictures_of(const std::string& svg) {
+  std::vector<std::string> pictures;
+  for (std::size_t at = svg.find("<svg x="); at != std::string::npos;) {
+    const std::size_t next = svg.find("<svg x=", at + 1);
+    pictures.push_back(svg.substr(at, next - at));
+    at = next;
+  }
+  return pictures;
+}
+
+TEST(Strip, GlassShowsAllItsCracksOnceSomethingOfItBroke) {
+  for (const std::string material : {"float-glass", "toughened-glass", "glass", "pmma"}) {
+    Recording recording = sample();
+    recording.walls[0].asset.wall.material = material;
+    std::ranges::fill(recording.walls[0].track, kNoTrack);
+    const std::vector<std::string> pictures = pictures_of(draw_strip(recording, {.frames = 3}));
+    ASSERT_EQ(pictures.size(), 3u) << material;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      // Each of the seams belongs to two chunks.
+      EXPECT_EQ(segments_of(pictures[i], "<path class=\"crack\" d=\""),
+                i == 0 ? 0u : 2u * (11 * 6 + 12 * 5))
+          << material << ", picture " << i;
+      EXPECT_EQ(segments_of(pictures[i], "<path class=\"edge\" d=\""), 2u * (12 + 6));
+    }
+  }
+}
+
+TEST(Strip, APaneShowsNoCracksOfAnother) {
+  WallAsset other = sample_wall("other", 2, 2);
+  other.wall.position = {8, 0, 0};
+  Recording recording = sample_recording({sample_wall("facade", 12, 6), other}, {});
+  recording.walls[1].asset.wall.material = "float-glass";
+  EXPECT_EQ(count_of(draw_strip(recording), "<path class=\"crack\""), 0u);
+  recording.events[0].wall = 1;
+  EXPECT_GT(count_of(draw_strip(recording), "<path class=\"crack\""), 0u);
+}
+
+TEST(Strip, TwiceGivesTheSameBytes) {
+  Recording recording = sample();
+  recording.walls[0].asset.wall.material = "float-glass";
+  EXPECT_EQ(draw_strip(recording), draw_strip(recording));
 }
 
 TEST(Strip, WithoutGroundThereIsNoGroundAndNoShadow) {
