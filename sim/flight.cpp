@@ -202,6 +202,7 @@ void ImpactRun::raise_collider(std::uint32_t w, std::uint32_t chunk) {
   state.collider =
       world_.add_static(walls_[w].standing, walls_[w].prisms(chunk), walls_[w].surface(), order);
   own(state.collider, {Owner::Kind::collider, w, chunk});
+  state.has_hull = true;
 }
 
 std::optional<ImpactRun::Arrival> ImpactRun::next_arrival(double dt) const {

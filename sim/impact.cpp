@@ -168,6 +168,7 @@ void ImpactRun::step_once(double end) {
     if (dt > 1e-3 * least) {
       advance(dt);
       meet_contacts();
+      watch_projectiles();
     }
     if (!arrival) continue;
     ++arrivals;
@@ -192,21 +193,16 @@ double ImpactRun::next_substep(double left) {
 }
 
 void ImpactRun::advance(double dt) {
-  double awake_mass = 0;
-  for (const std::uint32_t i : live_)
-    if (world_.is_awake(islands_[i].body)) awake_mass += masses_[islands_[i].body];
-  for (const Shot& shot : shots_)
-    if (shot.body != kNoBody && world_.is_awake(shot.body)) awake_mass += shot.projectile.mass;
   const Vec3 before = world_.momentum();
   world_.step(dt);
   now_ += dt;
   ++result_.substeps;
   const Vec3 reaction = world_.reaction(), after = world_.momentum();
   impulse_ = impulse_ + reaction;
-  const Vec3 weight{0, -awake_mass * scene_.simulation.gravity * dt, 0};
   largest_momentum_ = std::max({largest_momentum_, length(before), length(after)});
   largest_momentum_error_ =
-      std::max(largest_momentum_error_, length(after - before - reaction - weight));
+      std::max(largest_momentum_error_, length(after - before - reaction - world_.weight()));
+  result_.penetration_max = std::max(result_.penetration_max, world_.overlap());
   const StepWork work = world_.work();
   result_.energy.contact += work.contact;
   result_.energy.friction += work.friction;
@@ -237,7 +233,6 @@ void ImpactRun::record(double time) {
       result_.chunk_steps_not_simulated += count;
       result_.poses_not_recorded += count;
     }
-  watch_projectiles();
   note_energy();
 }
 
@@ -291,9 +286,10 @@ ImpactResult ImpactRun::outcome() {
     }));
     chunks += recorded.back().track.size();
     r.walls_untouched += !wall.touched;
+    for (const ChunkState& chunk : wall.chunks)
+      r.hulls_not_built += chunk.island != kNoIsland && !chunk.has_hull;
   }
   r.chunks = chunks;
-  r.hulls_not_built = chunks - std::min<std::uint64_t>(chunks, world_.hulls_built());
   r.recording = recorder_.take();
   r.recording.walls = std::move(recorded);
   for (const Shot& shot : shots_) r.recording.projectiles.push_back({shot.projectile, shot.track});

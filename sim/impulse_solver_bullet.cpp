@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/impulse_solver.hpp"
-
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "sim/impulse_solver.hpp"
 
 namespace sunder {
 namespace {
@@ -14,7 +14,9 @@ constexpr double kPushShare = 0.2;  // of the rest that one step removes
 constexpr double kPushSpeed = 1;    // m/s, at most
 constexpr double kSettled = 1e-11;  // m/s; the solver stops when no row changes by more
 
-Vec3 ours(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3 ours(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 class Solver final : public btSequentialImpulseConstraintSolver {
  public:
@@ -44,9 +46,8 @@ class Solver final : public btSequentialImpulseConstraintSolver {
                                              btIDebugDraw* draw) override {
     const auto solve = [&] {
       for (int i = 0; i < info.m_numIterations; ++i) {
-        const double change =
-            solveSingleIteration(i, bodies, body_count, manifolds, manifold_count, constraints,
-                                 constraint_count, info, draw);
+        const double change = solveSingleIteration(i, bodies, body_count, manifolds, manifold_count,
+                                                   constraints, constraint_count, info, draw);
         if (change < kSettled * kSettled) return;
       }
     };
@@ -68,8 +69,7 @@ class Solver final : public btSequentialImpulseConstraintSolver {
       btSolverConstraint& row =
           m_tmpSolverContactConstraintPool[iteration % 2 == 0 ? k : count - 1 - k];
       most = std::max(most, solve_friction(row));
-      const double change =
-          resolveSingleConstraintRowLowerLimit(body_a(row), body_b(row), row);
+      const double change = resolveSingleConstraintRowLowerLimit(body_a(row), body_b(row), row);
       most = std::max(most, change * change);
     }
     return most;
@@ -194,9 +194,9 @@ class Solver final : public btSequentialImpulseConstraintSolver {
     for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
       btSolverConstraint& row = m_tmpSolverContactConstraintPool[i];
       const Meeting& m = meeting_of(row);
-      const double gap =
-          m.gap_then + drift(*m.a, body_a(row), row.m_contactNormal1, row.m_relpos1CrossNormal) +
-          drift(*m.b, body_b(row), row.m_contactNormal2, row.m_relpos2CrossNormal);
+      const double gap = m.gap_then +
+                         drift(*m.a, body_a(row), row.m_contactNormal1, row.m_relpos1CrossNormal) +
+                         drift(*m.b, body_b(row), row.m_contactNormal2, row.m_relpos2CrossNormal);
       const double out = std::min(kPushShare * std::max(0.0, -gap - kSlop), kPushSpeed * task_.dt);
       row.m_rhsPenetration = out * row.m_jacDiagABInv;
       any |= out > 0;

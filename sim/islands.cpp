@@ -150,7 +150,7 @@ void ImpactRun::lower_collider(std::uint32_t wall, std::uint32_t chunk) {
 
 void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
   Island& island = islands_[index];
-  const WallState& wall = walls_[island.wall];
+  WallState& wall = walls_[island.wall];
   BodyParams body = wall.body_of(island.chunks);
   body.pose = motion.pose;
   const Vec3 centre = motion.pose * body.centroid;
@@ -158,8 +158,10 @@ void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
   body.angular_velocity = motion.angular_velocity;
   body.order = kBodies + serial_++;
   std::vector<Prism> prisms;
-  for (const std::uint32_t chunk : island.chunks)
+  for (const std::uint32_t chunk : island.chunks) {
     for (Prism& prism : wall.prisms(chunk)) prisms.push_back(std::move(prism));
+    wall.chunks[chunk].has_hull = true;
+  }
   island.body = world_.add_body(body, prisms);
   own(island.body, {Owner::Kind::island, index, 0});
   masses_.resize(std::max<std::size_t>(masses_.size(), island.body + 1));

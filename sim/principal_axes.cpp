@@ -8,7 +8,7 @@
 namespace sunder {
 namespace {
 
-constexpr int kMaxSweeps = 30;      // quadratic convergence: five are enough
+constexpr int kMaxSweeps = 30;         // quadratic convergence: five are enough
 constexpr double kNegligible = 1e-17;  // of the trace
 
 /// Rotates the plane of p and q so that m[p][q] becomes 0; the columns of v follow.

@@ -130,13 +130,17 @@ class RigidWorld {
   std::span<const Contact> contacts() const;
   /// Sum of the impulses that ground, static colliders and sleepers gave in the last step, N s.
   Vec3 reaction() const;
+  /// Impulse of gravity on the moving bodies in the last step, N s: the change of momentum is this
+  /// and reaction().
+  Vec3 weight() const;
+  /// Deepest overlap of two bodies when the last step began, m.
+  double overlap() const;
   StepWork work() const;  ///< of the last step
   double kinetic_energy() const;                ///< of all moving bodies, J
   double potential_energy() const;              ///< of all moving bodies, above y = 0, J
   Vec3 momentum() const;                        ///< of all moving bodies, kg m/s
   Vec3 angular_momentum(Vec3 about) const;
   std::uint32_t body_count() const;             ///< moving ones
-  std::uint64_t hulls_built() const;            ///< collision shapes made so far
 
  private:
   struct Impl;

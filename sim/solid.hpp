@@ -38,9 +38,8 @@ class Solid {
   ~Solid();
 
   bool is_half_space() const;
-  double radius() const;       ///< above 0: a ball
-  double reach() const;        ///< furthest corner from the centre of mass
-  std::uint32_t hulls() const;  ///< shapes made for it
+  double radius() const;        ///< above 0: a ball
+  double reach() const;         ///< furthest corner from the centre of mass
   btCollisionShape& shape() const;
   /// Not of the half-space.
   WorldBox extent(const btTransform& at) const;

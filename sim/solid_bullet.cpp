@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bullet's shapes and narrowphase (GJK, EPA, face clipping), put together so that contacts are
 // exact where they can be: gaps to faces, normals of faces, all corners at once.
-#include "sim/solid.hpp"
-
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btConvexPolyhedron.h>
@@ -18,6 +16,8 @@
 #include <cassert>
 #include <new>
 
+#include "sim/solid.hpp"
+
 namespace sunder {
 namespace {
 
@@ -30,8 +30,12 @@ constexpr double kFar = 1e-3;         // m; contacts of a ball further away are 
 constexpr double kArrived = 1e-9;     // m
 constexpr int kFollowSteps = 24;
 
-btVector3 bullet(Vec3 v) { return {v.x, v.y, v.z}; }
-Vec3 ours(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+btVector3 bullet(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+Vec3 ours(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 btDbvtVolume volume_of(const WorldBox& extent) {
   return btDbvtVolume::FromMM(bullet(extent.low), bullet(extent.high));
 }
@@ -69,7 +73,8 @@ class PrismShape final : public btConvexHullShape {
 
   WorldBox extent(const btTransform& at) const {
     WorldBox extent;
-    for (int i = 0; i < solid().m_vertices.size(); ++i) extent.add(ours(at * solid().m_vertices[i]));
+    for (int i = 0; i < solid().m_vertices.size(); ++i)
+      extent.add(ours(at * solid().m_vertices[i]));
     return extent;
   }
 
@@ -278,8 +283,8 @@ void WorldBox::grow(double by) {
   high = high + Vec3{by, by, by};
 }
 bool overlap(const WorldBox& a, const WorldBox& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
-         b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
 struct Solid::Impl {
@@ -323,11 +328,14 @@ Solid::Solid(std::span<const Prism> prisms, const Axes& axes, Vec3 centre)
 Solid::Solid(Solid&&) noexcept = default;
 Solid::~Solid() = default;
 
-bool Solid::is_half_space() const { return impl_->parts.empty() && impl_->radius == 0; }
-double Solid::radius() const { return impl_->radius; }
-double Solid::reach() const { return impl_->reach; }
-std::uint32_t Solid::hulls() const {
-  return static_cast<std::uint32_t>(std::max<std::size_t>(1, impl_->parts.size()));
+bool Solid::is_half_space() const {
+  return impl_->parts.empty() && impl_->radius == 0;
+}
+double Solid::radius() const {
+  return impl_->radius;
+}
+double Solid::reach() const {
+  return impl_->reach;
 }
 btCollisionShape& Solid::shape() const {
   return impl_->whole ? *impl_->whole : *impl_->parts[0];
@@ -378,13 +386,13 @@ struct Toucher::Impl {
   void find_near_parts(const Placed& few, std::uint32_t part, const Placed& many, double margin,
                        std::vector<std::uint32_t>& near);
   void touch(const Placed& a, std::uint32_t i, const Placed& b, std::uint32_t j, double margin);
-  void follow(Placed a, std::uint32_t i, const Placed& b, std::uint32_t j, const RelativePath& path);
+  void follow(Placed a, std::uint32_t i, const Placed& b, std::uint32_t j,
+              const RelativePath& path);
 };
 
 /// Calls `visit(i, j)` for parts whose boxes are nearer than margin, in ascending order.
 template <typename Visit>
-void Toucher::Impl::for_near_parts(const Placed& a, const Placed& b, double margin,
-                                   Visit&& visit) {
+void Toucher::Impl::for_near_parts(const Placed& a, const Placed& b, double margin, Visit&& visit) {
   const std::size_t count_a = a.solid->parts.size(), count_b = b.solid->parts.size();
   if (count_a <= 1 && count_b <= 1) return visit(0u, 0u);
   const bool swapped = count_a > count_b;
@@ -427,7 +435,8 @@ void Toucher::Impl::find_near_parts(const Placed& few, std::uint32_t part, const
     box = few.solid->parts[part]->extent(into_many);
   }
   box.grow(margin);
-  const btDbvt& tree = *static_cast<const btCompoundShape&>(*many.solid->whole).getDynamicAabbTree();
+  const btDbvt& tree =
+      *static_cast<const btCompoundShape&>(*many.solid->whole).getDynamicAabbTree();
   tree.collideTVNoStackAlloc(tree.m_root, volume_of(box), stack, collect);
 }
 
@@ -437,8 +446,7 @@ void Toucher::Impl::touch(const Placed& a, std::uint32_t i, const Placed& b, std
   touches.clear();
   const btCollisionObjectWrapper wrap_a(nullptr, a.solid->part(i), &nobody, a.at, -1, -1);
   const btCollisionObjectWrapper wrap_b(nullptr, b.solid->part(j), &nobody, b.at, -1, -1);
-  const bool flipped =
-      a.solid->parts.empty() && (a.solid->radius == 0 || !b.solid->parts.empty());
+  const bool flipped = a.solid->parts.empty() && (a.solid->radius == 0 || !b.solid->parts.empty());
   const btCollisionObjectWrapper* first = flipped ? &wrap_b : &wrap_a;
   const btCollisionObjectWrapper* second = flipped ? &wrap_a : &wrap_b;
   PointCollector collector(first, second, margin, touches);
@@ -490,12 +498,15 @@ Toucher::Toucher() : impl_(std::make_unique<Impl>()) {
   impl_->scratch = dispatcher.getNewManifold(&impl_->nobody, &impl_->nobody);
   impl_->scratch->setContactBreakingThreshold(0);
 }
-Toucher::~Toucher() = default;
-btCollisionDispatcher& Toucher::dispatcher() { return impl_->dispatcher; }
+Toucher::~Toucher() {
+  impl_->dispatcher.releaseManifold(impl_->scratch);
+}
+btCollisionDispatcher& Toucher::dispatcher() {
+  return impl_->dispatcher;
+}
 
-void Toucher::find(const Solid& a, const btTransform& at_a, const Solid& b,
-                   const btTransform& at_b, double margin, const RelativePath& path,
-                   std::vector<PartTouch>& found) {
+void Toucher::find(const Solid& a, const btTransform& at_a, const Solid& b, const btTransform& at_b,
+                   double margin, const RelativePath& path, std::vector<PartTouch>& found) {
   const Placed placed_a{a.impl_.get(), at_a}, placed_b{b.impl_.get(), at_b};
   const bool is_round =
       (a.radius() > 0 || b.radius() > 0) && !a.is_half_space() && path.duration > 0;

@@ -235,9 +235,9 @@ void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double foot
 // passes no bending on.
 struct SpeedProfile {
   Vec2 centre;
-  double footprint, thickness;
+  double footprint, spread;
   double at(double distance) const {
-    return std::clamp(1 - (distance - footprint) / thickness, 0.0, 1.0);
+    return std::clamp(1 - (distance - footprint) / spread, 0.0, 1.0);
   }
   double of(const WallState& wall, std::uint32_t chunk) const {
     const ChunkState& state = wall.chunks[chunk];
@@ -282,7 +282,10 @@ bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& f
                           double footprint) {
   const WallState& wall = walls_[islands_[m.island].wall];
   const double density = wall.material.density;
-  const SpeedProfile profile{answer.centre, footprint, 2 * wall.half_thickness};
+  // What a light striker punches out moves as one plug.
+  const double spread = answer.blow.is_global ? 2 * wall.half_thickness
+                                              : std::numeric_limits<double>::infinity();
+  const SpeedProfile profile{answer.centre, footprint, spread};
   double plug = 0, plug_energy = 0;  // Σ m φ, Σ m φ²
   bool way_is_free = false;
   for (const std::uint32_t i : freed.islands)

@@ -24,6 +24,7 @@ struct ChunkState {
   std::uint32_t island = kNoIsland; ///< that it belongs to; kNoIsland: it was replaced
   BodyId collider = kNoBody;        ///< while it stands and something is near
   std::uint8_t depth = 0;           ///< how often it broke since it was a cell
+  bool has_hull = false;            ///< a collision shape was ever made of it
 };
 
 /// Connected chunks: what stands of a wall, or a body in motion.

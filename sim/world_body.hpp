@@ -34,18 +34,19 @@ struct Body {
   Quaternion rotation;  ///< of the design frame
   Axes axes;            ///< of rotation
   Vec3 velocity, spin;
-  double still_for = 0;  ///< s
+  double still_for = 0;   ///< s
+  double exempt_for = 0;  ///< s; meets only balls and the ground
 
   // Of the step in progress.
   Vec3 velocity_before, spin_before;
-  WorldBox swept;             ///< wherever it may be during the step
+  WorldBox swept;           ///< wherever it may be during the step
   double contact_time = 0;  ///< since the start of the step: its impulses act then
   bool arrives = false;     ///< contact_time is that of an impact
   std::uint32_t slot = 0;   ///< 0: does not move, or has no contact
   Vec3 shift;               ///< of the centre until contact_time
   Quaternion rotation_then;
-  Axes axes_then;  ///< of rotation_then
-  Vec3 spin_then;  ///< before the impulses
+  Axes axes_then;                   ///< of rotation_then
+  Vec3 spin_then;                   ///< before the impulses
   Vec3 velocity_after, spin_after;  ///< the solver's
   Vec3 push, turn;  ///< displacement that removes overlap, m and rad; leaves velocities alone
 
@@ -71,9 +72,9 @@ struct Meeting {
   Vec3 origin;
   Vec3 point, normal;  ///< at the start of the step; the normal leads from b to a
   double gap = 0;
-  double gap_then = 0;  ///< when the bodies are where their impulses act
-  double closing = 0;   ///< normal speed towards each other at the start, m/s
-  double pull = 0;      ///< by how much gravity adds to it, m/s²
+  double gap_then = 0;       ///< when the bodies are where their impulses act
+  double closing = 0;        ///< normal speed towards each other at the start, m/s
+  double pull = 0;           ///< by how much gravity adds to it, m/s²
   bool arrives = false;      ///< the gap closes within the step, at more than a creeping speed
   double arrival_time = 0;   ///< since the start of the step
   double arrival_speed = 0;  ///< m/s
@@ -83,5 +84,24 @@ struct Meeting {
   double given = 0, given_along = 0, given_across = 0;
   btManifoldPoint* solved = nullptr;
 };
+
+constexpr double kCreep = 0.05;  ///< m/s; slower arrivals do not bounce
+
+/// `solid` is described in Bullet's frame: centre of mass and principal axes.
+std::unique_ptr<Body> moving_body(const BodyParams& params, const PrincipalAxes& principal,
+                                  Solid solid);
+/// Slower than so much of the speeds at which bodies fall asleep.
+bool is_slow(const Body& body, double share);
+/// How far a corner may go by rotation in a step, m.
+double sweep(const Body& body, double dt);
+/// Fills closing, pull and the arrival from the bodies at the start of a step.
+void set_approach(Meeting& meeting, Vec3 gravity, double dt);
+/// Fills shift, rotation, axes and spin at the body's contact_time.
+void drift_to_impulses(Body& body, Vec3 gravity);
+/// Fills gap_then, arms and bound from where the bodies have drifted to.
+void place_point(Meeting& meeting, double dt);
+/// From the impulses to the end of the step. Returns the energy that lifting the body out of an
+/// overlap gave, J.
+double advance(Body& body, Vec3 gravity, double dt);
 
 }  // namespace sunder
