@@ -5,18 +5,19 @@ include(CMakePackageConfigHelpers)
 # The public headers: what a user includes, and what those include. The others may change any time.
 set(sunder_meshing_headers error field lattice parallel random raw_vector region tri_mesh triangulate
                            trig vec)
-set(sunder_fracture_headers asset bonds breaking chunk_mesh cut measure pattern quad_grid sites
-                            slivers spiderweb voronoi wall)
+set(sunder_fracture_headers asset bonds breaking chunk_mesh cut local_web measure pattern quad_grid
+                            recover sites slivers spiderweb support_graph voronoi wall)
 set(sunder_sim_headers blow impact material penetration pose projectile recording rigid_world
                       simulation_params)
-set(sunder_io_headers export import output report scene)
+set(sunder_io_headers export export_recording impact_report impact_scene import output report scene)
 foreach(layer meshing fracture sim io)
   foreach(header ${sunder_${layer}_headers})
     install(FILES ${PROJECT_SOURCE_DIR}/${layer}/${header}.hpp
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sunder/${layer})
   endforeach()
 endforeach()
-install(TARGETS sunder sunder_meshing sunder_fracture sunder_sim sunder_io sunder_command EXPORT sunder-targets)
+install(TARGETS sunder sunder_meshing sunder_fracture sunder_sim sunder_io sunder_command
+        EXPORT sunder-targets)
 install(EXPORT sunder-targets NAMESPACE sunder:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sunder)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sunder-config.cmake.in
