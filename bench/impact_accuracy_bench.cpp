@@ -558,8 +558,8 @@ void sweep_stability() {
       faults.push_back(name_of(cell) + ": " + fault);
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    std::printf("| %s %s | %zu | %zu | %.1f |\n", cells[0].axis, cells[0].material, cells.size(),
-                failures, took.count());
+    std::printf("| %s%s%s | %zu | %zu | %.1f |\n", cells[0].axis, *cells[0].material ? " " : "",
+                cells[0].material, cells.size(), failures, took.count());
     std::fflush(stdout);
   }
   std::printf("\n");

@@ -232,6 +232,7 @@ inline std::vector<StabilityCell> tunnelling_cells() {
 }
 
 inline std::vector<StabilityCell> material_cells(const char* material) {
+  const bool is_thin = std::string(material) == "float-glass";
   std::vector<StabilityCell> cells;
   for (const double step : {1.0 / 30, 1.0 / 60})
     for (const int iterations : {4, 7, 9, 20})
@@ -240,12 +241,12 @@ inline std::vector<StabilityCell> material_cells(const char* material) {
                        .mass = 514,
                        .step = step,
                        .iterations = iterations,
-                       .thickness = std::string(material) == "float-glass" ? 0.01 : 0.2,
+                       .thickness = is_thin ? 0.01 : 0.2,
                        .speed = 10,
                        .radius = 0.25,
                        .width = 3,
                        .height = 2,
-                       .duration = 0.5});
+                       .duration = is_thin ? 0.2 : 0.5});
   return cells;
 }
 
