@@ -18,6 +18,9 @@ constexpr std::uint64_t kColliders = std::uint64_t{2} << 60;
 /// A body counts as fast when it covers more than this share of its own size in a substep, at a
 /// max_error of 0.01.
 constexpr double kStepShare = 0.5;
+/// A substep ends this share of the radius before the contact, so that rounding does not let the
+/// solver find it too.
+constexpr double kRoom = 1e-6;
 
 /// Time until s = u t + a t²/2, s >= 0; infinity if never.
 double time_to(double s, double u, double a) {
@@ -231,7 +234,8 @@ std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_ground(std::uint32_t s, 
   const double gap = centre.y - shot.projectile.radius - simulation.ground_height;
   const double speed = -world_.velocity(shot.body).y, g = simulation.gravity;
   // The solver takes the speed at a substep's end for the whole of it: leave it that much room.
-  const double room = std::max(gap - 0.5 * g * dt * dt, 0.0);
+  const double room =
+      std::max(gap - 0.5 * g * dt * dt - kRoom * shot.projectile.radius, 0.0);
   const double time = time_to(room, speed, g);
   if (!(time <= dt) || !(speed + g * time > least_arrival_speed())) return {};
   const double height = simulation.ground_height;
@@ -254,7 +258,8 @@ std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_wall(std::uint32_t s, st
   const double gap = side * p.z - wall.half_thickness - shot.projectile.radius;
   const double speed = -side * v.z, gain = -side * g.z;
   if (gap < -0.5 * shot.projectile.radius) return {};  // in a hole
-  const double room = std::max(gap - 0.5 * std::abs(gain) * dt * dt, 0.0);
+  const double room =
+      std::max(gap - 0.5 * std::abs(gain) * dt * dt - kRoom * shot.projectile.radius, 0.0);
   const double time = time_to(room, speed, gain);
   if (!(time <= dt) || !(speed + gain * time > least_arrival_speed())) return {};
   const Vec2 at{p.x + v.x * time + 0.5 * g.x * time * time,
@@ -265,13 +270,22 @@ std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_wall(std::uint32_t s, st
                  rotate(pose.rotation, {0, 0, side})};
 }
 
+bool ImpactRun::is_there(const Arrival& arrival) const {
+  if (arrival.island == kNoIsland) return true;
+  const WallState& wall = walls_[arrival.island];
+  const Vec3 at = inverse(pose_of(islands_[arrival.island])) * arrival.point;
+  const std::uint32_t cell = wall.bins.cell_at(wall.asset.pattern, {at.x, at.y});
+  return cell != kNoCell && wall.chunks[wall.chunk_of_cell[cell]].island == arrival.island;
+}
+
 void ImpactRun::arrive(const Arrival& arrival) {
   const Shot& shot = shots_[arrival.shot];
   Vec3 relative = world_.velocity(shot.body);
   if (arrival.island != kNoIsland && islands_[arrival.island].body != kNoBody)
     relative = relative - world_.velocity_at(islands_[arrival.island].body, arrival.point);
   const double speed = -dot(relative, arrival.normal);
-  if (!(speed > 0)) return;  // something else stopped it on the way
+  // Something else stopped it on the way, or broke what it was going to meet.
+  if (!(speed > 0) || !is_there(arrival)) return;
   if (arrival.island == kNoIsland) {
     bounce({shot.body, kNoIsland, arrival.point, arrival.normal, speed, false}, kNoBody,
            ground_surface());

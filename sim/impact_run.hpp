@@ -110,6 +110,7 @@ class ImpactRun {
   std::optional<Arrival> next_arrival(double dt) const;
   std::optional<Arrival> arrival_at_ground(std::uint32_t shot, double dt) const;
   std::optional<Arrival> arrival_at_wall(std::uint32_t shot, std::uint32_t wall, double dt) const;
+  bool is_there(const Arrival& arrival) const;
   void arrive(const Arrival& arrival);
   /// A projectile bounces off something solid (kNoBody) or off a body.
   void bounce(const Meeting& meeting, BodyId other, const Surface& surface);

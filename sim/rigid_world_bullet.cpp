@@ -536,7 +536,7 @@ void World::fill_point(Meeting& m, btManifoldPoint& point) const {
 void World::recall(const Link& link, Meeting& m, btManifoldPoint& point) const {
   btManifoldPoint* nearest = remembered(link, m);
   if (nearest == nullptr) return;
-  const double ratio = dt_ / last_dt_;
+  const double ratio = std::min(1.0, dt_ / last_dt_);
   const btVector3 friction = nearest->m_lateralFrictionDir1 * nearest->m_appliedImpulseLateral1 +
                              nearest->m_lateralFrictionDir2 * nearest->m_appliedImpulseLateral2;
   point.m_appliedImpulse = ratio * nearest->m_appliedImpulse;

@@ -192,7 +192,14 @@ SpiderwebParams ImpactRun::web_of(const WallState& wall, const Answer& answer, d
   const auto corners = static_cast<std::int64_t>(
       std::clamp(std::floor(expected + random_unit(seed, 1)), 3.0, double{kMostRadial}));
   params.min_points = params.max_points = corners;
+  // Spokes, the polygon around them and the rings: no larger than the energy pays for.
+  const double length_per_radius =
+      static_cast<double>(corners) + 6.3 * (1 + 0.5 * static_cast<double>(params.rings));
+  const double energy_per_radius =
+      length_per_radius * thickness * wall.material.fracture_energy;
   params.max_radius = std::max(answer.blow.crack_radius, 1.25 * footprint);
+  if (energy_per_radius > 0)
+    params.max_radius = std::clamp(budget / energy_per_radius, 0.5 * footprint, params.max_radius);
   params.min_radius = 0.7 * params.max_radius;
   if (params.radial > 0) {
     params.radial = corners;
@@ -366,7 +373,9 @@ void ImpactRun::meet_contacts() {
       point = point + weight * contacts[end].point;
       m.speed = std::max(m.speed, contacts[end].approach);
     }
-    if (m.speed < kLeastSpeed || !(impulse > 0)) continue;
+    // A projectile's first hit is noted however slow it is.
+    const bool is_shot = owner(contacts[begin].a).kind == Owner::Kind::projectile;
+    if (m.speed < (is_shot ? 0 : kLeastSpeed) || !(impulse > 0)) continue;
     m.point = (1 / impulse) * point;
     m.solved = true;
     const Contact& first = contacts[begin];
@@ -382,7 +391,9 @@ bool ImpactRun::is_gentle(const Meeting& m) const {
   const Striker striker = striker_of(m);
   const double thickness = 2 * wall.half_thickness;
   const Vec3 normal = rotate(conjugate(pose_of(island).rotation), m.normal);
-  if (owner(m.striker).kind == Owner::Kind::projectile) return false;  // its first hit is noted
+  const Owner& who = owner(m.striker);
+  if (who.kind == Owner::Kind::projectile && !result_.projectiles[who.index].hit)
+    return false;  // it is to be noted
   if (std::abs(normal.z) >= kFaceContact)
     return !(utilisation_of(striker, m.speed, thickness, wall.material) > 1);
   return !(edge_force_of(striker, m.speed, wall.material) >
