@@ -110,10 +110,11 @@ bool is_heavy(const Striker& striker, double thickness, const Material& material
 void set_local(Blow& blow, const Striker& striker, double speed, double thickness,
                const Material& material) {
   const double compressive = strengths_of(material).compressive;
-  blow.ballistic_speed = compressive > 0
-                             ? cea_edf_ballistic_speed(striker.mass, 2 * striker.radius, thickness,
-                                                       compressive, material.density)
-                             : kInfinity;
+  ConcreteShot shot;
+  shot.mass = striker.mass;
+  shot.diameter = 2 * striker.radius;
+  shot.compressive_strength = compressive;
+  blow.ballistic_speed = compressive > 0 ? ndrc_ballistic_speed(shot, thickness) : kInfinity;
   const double ratio = speed / blow.ballistic_speed;
   blow.utilisation = ratio * ratio;
   if (speed > blow.ballistic_speed) blow.crack_radius = striker.radius + thickness / 2;

@@ -44,7 +44,7 @@ struct Blow {
 /// the cosine integral in the plate's response); at and inside r0 = min(max(H/2, R/4), R_e/4) it
 /// is that at r0.
 /// Global: utilisation σ(r0)/f_t; ballistic_speed is the speed for which it is 1, sought up to
-/// 100 km/s; crack_radius solves σ(r) = f_t. Local: ballistic_speed by CEA-EDF, a fit to concrete
+/// 100 km/s; crack_radius solves σ(r) = f_t. Local: ballistic_speed by NDRC's formula, a fit to concrete
 /// (sim/penetration.hpp); utilisation (v/ballistic_speed)²; crack_radius R + H/2 once it
 /// perforates.
 /// Force and utilisation never fall with speed or mass. crack_radius can: it is bounded by the

@@ -206,6 +206,7 @@ void ImpactRun::advance(double dt) {
   const StepWork work = world_.work();
   result_.energy.contact += work.contact;
   result_.energy.friction += work.friction;
+  unspent_ = std::max(work.contact + work.friction, 0.0);
 }
 
 void ImpactRun::note_energy() {

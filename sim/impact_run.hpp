@@ -57,6 +57,7 @@ class ImpactRun {
     Vec3 point, normal;                ///< world; normal points to the striker
     double speed = 0;                  ///< of approach
     bool solved = false;               ///< the contact solver has answered it already
+    double impulse = 0;                ///< that the solver gave the striker along the normal, N s
   };
   /// How an island answers: out of its plane (a plate bends) or in it (an edge is hit).
   struct Answer {
@@ -126,13 +127,16 @@ class ImpactRun {
   std::vector<Crack> cracks(const Island& island, const Answer& answer, double footprint,
                             double budget) const;
   std::vector<std::uint32_t> chunks_near(const Island& island, Vec2 centre, double reach) const;
+  bool is_in_footprint(const WallState& wall, const ChunkState& chunk, const Answer& answer,
+                       double footprint) const;
   std::vector<Crack> affordable(const Island& island, std::vector<Crack> found,
                                 double budget) const;
   SpiderwebParams web_of(const WallState& wall, const Answer& answer, double footprint,
                          double speed, double budget, std::uint64_t seed) const;
   void weave_web(std::uint32_t island, const Answer& answer, double footprint, double speed,
                  double budget);
-  void go_through(const Meeting& meeting, const Answer& answer);
+  double usable_speed(const Meeting& meeting) const;
+  void go_through(Meeting meeting, const Answer& answer);
   bool hand_over(const Meeting& meeting, const Answer& answer, const Freed& freed, double mass,
                  double footprint);
   void push_island(std::uint32_t island, const SpeedProfile& profile, double speed, Vec3 along);
@@ -174,6 +178,7 @@ class ImpactRun {
   std::uint64_t serial_ = 0;     ///< of bodies, for their order
   double baseline_ = 0;          ///< potential energy of all bodies where they started, J
   Vec3 impulse_;                 ///< that ground and anchors gave, N s
+  double unspent_ = 0;           ///< energy that contacts took in the last substep, J, less cracks'
   double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
   std::vector<double> masses_;   ///< by BodyId, kg
   /// Per wall: pairs of standing chunks whose bond broke, ascending.

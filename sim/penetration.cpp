@@ -115,6 +115,18 @@ BallisticBand ballistic_band(const ConcreteShot& shot, double thickness) {
           ukaea_speed(ukaea_scale(shot) * slab_factor(shot.mass, shot.diameter, thickness))};
 }
 
+double ndrc_ballistic_speed(const ConcreteShot& shot, double thickness) {
+  constexpr double kBranch = 1.35;  // x/d, where the perforation formula changes
+  const double h = thickness / shot.diameter;
+  const double x = h <= 1.32 + 1.24 * kBranch
+                       ? (3.19 - std::sqrt(std::max(3.19 * 3.19 - 4 * 0.718 * h, 0.0))) / 1.436
+                       : (h - 1.32) / 1.24;
+  const double factor = x <= 2 ? x * x / 4 : x - 1;
+  const double scale = 3.8e-5 * shot.nose * shot.mass /
+                       (shot.diameter * std::sqrt(shot.compressive_strength));
+  return shot.diameter * power_of(factor / scale, 1 / 1.8);
+}
+
 double cea_edf_ballistic_speed(double mass, double diameter, double thickness,
                                double compressive_strength, double density) {
   return 1.3 * power_of(density, 1.0 / 6.0) * std::sqrt(compressive_strength) *

@@ -36,6 +36,10 @@ struct BallisticBand {
 };
 BallisticBand ballistic_band(const ConcreteShot& shot, double thickness);
 
+/// NDRC's formula the other way round: the speed at which a slab is just perforated, m/s. Of the
+/// four it is nearest to the tests we know (Hanchak, IRIS; docs/impact.md), so blow_of uses it.
+double ndrc_ballistic_speed(const ConcreteShot& shot, double thickness);
+
 /// CEA-EDF: V_bl = 1.3 ρ^(1/6) √f_c (d H²/M)^(2/3), m/s: the inverse of its perforation thickness
 /// 0.82 √(M/d) V^¾ / (ρ^⅛ f_c^⅜) but for the rounding of 0.82 (0.2 %).
 double cea_edf_ballistic_speed(double mass, double diameter, double thickness,

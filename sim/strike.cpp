@@ -135,6 +135,17 @@ std::vector<std::uint32_t> ImpactRun::chunks_near(const Island& island, Vec2 cen
   return locals;
 }
 
+// What the striker touches is in its way. The plug of a light one is wider: chunks whose middle lies
+// in it, so that its mass does not depend on their size.
+bool ImpactRun::is_in_footprint(const WallState& wall, const ChunkState& chunk,
+                                const Answer& answer, double footprint) const {
+  if (chunk.cell == kNoCell || !(footprint > 0)) return false;
+  const Vec2 middle{chunk.mass.centroid.x, chunk.mass.centroid.y};
+  return length(middle - answer.centre) < footprint ||
+         distance_to_cell(wall.asset.pattern, chunk.cell, answer.centre) <
+             std::min(answer.striker.radius, footprint);
+}
+
 // Bonds that the blow over-stresses, most over-stressed first, as far as the energy lasts. What lies
 // in the footprint is sheared out whatever its bonds' distance.
 std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answer& answer,
@@ -145,9 +156,7 @@ std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answ
   for (const std::uint32_t local : chunks_near(island, answer.centre, reach)) {
     const ChunkState& chunk = wall.chunks[island.chunks[local]];
     const bool is_sheared = std::ranges::binary_search(woven_, island.chunks[local]) ||
-                            (chunk.cell != kNoCell && footprint > 0 &&
-                             distance_to_cell(wall.asset.pattern, chunk.cell, answer.centre) <
-                                 footprint);
+                            is_in_footprint(wall, chunk, answer, footprint);
     for (const std::uint32_t bond : island.graph->bonds_of(local)) {
       if (!island.graph->is_intact(bond)) continue;
       const Vec3 c = island.bonds[bond].centroid;
@@ -160,7 +169,8 @@ std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answ
   return affordable(island, std::move(found), budget);
 }
 
-// The most used first; a bond found from both its chunks counts once, with the larger demand.
+// The most used first, as far as the energy lasts; a bond found from both its chunks counts once,
+// with the larger demand.
 std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island,
                                                     std::vector<Crack> found,
                                                     double budget) const {
@@ -172,12 +182,12 @@ std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island,
     return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
   });
   const double energy = walls_[island.wall].material.fracture_energy;
-  std::size_t count = 0;
-  for (; count < found.size(); ++count) {
-    budget -= energy * island.bonds[found[count].bond].area;
-    if (budget < 0) break;
-  }
-  found.resize(count);
+  std::erase_if(found, [&](const Crack& crack) {
+    const double cost = energy * island.bonds[crack.bond].area;
+    if (cost > budget) return true;
+    budget -= cost;
+    return false;
+  });
   return found;
 }
 
@@ -254,7 +264,19 @@ struct SpeedProfile {
   }
 };
 
-void ImpactRun::go_through(const Meeting& m, const Answer& answer) {
+// Speed of approach that breaking may use: of a contact that the solver has answered, what is left
+// and what the contact took, as far as that energy was lost and not passed on to something else.
+double ImpactRun::usable_speed(const Meeting& m) const {
+  if (!m.solved) return m.speed;
+  const double left = -dot(world_.velocity_at(m.striker, m.point), m.normal);
+  const double inverse_mass = world_.inverse_mass_at(m.striker, m.point, m.normal);
+  const double taken = left + m.impulse * inverse_mass;
+  const double lost = std::sqrt(left * left + 2 * unspent_ * inverse_mass);
+  return std::clamp(std::min(taken, lost), 0.0, m.speed);
+}
+
+void ImpactRun::go_through(Meeting m, const Answer& answer) {
+  m.speed = usable_speed(m);
   const std::uint32_t wall_index = islands_[m.island].wall;
   const double mass = 1 / world_.inverse_mass_at(m.striker, m.point, m.normal);
   const Material material = walls_[wall_index].material;
@@ -278,8 +300,10 @@ void ImpactRun::go_through(const Meeting& m, const Answer& answer) {
   recorder_.add_event({now_, wall_index, m.point, m.speed, answer.blow.utilisation, freed.bonds,
                        freed.chunks});
   const bool passed = hand_over(m, answer, freed, mass, footprint);
-  result_.energy.contact += energy_before - world_.kinetic_energy() -
-                            material.fracture_energy * freed.driven_area;
+  const double spent = world_.kinetic_energy() - energy_before +
+                       material.fracture_energy * freed.driven_area;
+  result_.energy.contact -= spent;
+  if (m.solved) unspent_ = std::max(unspent_ - spent, 0.0);
   if (!passed && !m.solved) bounce(m, islands_[m.island].body, walls_[wall_index].surface());
 }
 
@@ -309,6 +333,7 @@ bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& f
   const double crack_energy = wall.material.fracture_energy * freed.driven_area;
   const double left = std::max(0.5 * mass * m.speed * m.speed - crack_energy, 0.0);
   speed = std::min(speed, std::sqrt(2 * left / (mass + plug_energy)));
+  const double now = m.solved ? -dot(world_.velocity_at(m.striker, m.point), m.normal) : m.speed;
   const Vec3 along = -1.0 * m.normal;
   const Island& rest = islands_[m.island];
   if (rest.body != kNoBody && !freed.rest_is_gone) {
@@ -319,9 +344,8 @@ bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& f
     world_.apply_impulse(rest.body, passed * along, m.point);
   } else {
     speed = std::min(speed, mass * m.speed / (mass + plug));
-    impulse_ = impulse_ + (mass * (m.speed - speed) - plug * speed) * m.normal;
+    impulse_ = impulse_ + (mass * (now - speed) - plug * speed) * m.normal;
   }
-  const double now = m.solved ? -dot(world_.velocity_at(m.striker, m.point), m.normal) : m.speed;
   world_.apply_impulse(m.striker, mass * (now - speed) * m.normal, m.point);
   for (const std::uint32_t i : freed.islands) push_island(i, profile, speed, along);
   return true;
@@ -378,6 +402,7 @@ void ImpactRun::meet_contacts() {
     if (m.speed < (is_shot ? 0 : kLeastSpeed) || !(impulse > 0)) continue;
     m.point = (1 / impulse) * point;
     m.solved = true;
+    m.impulse = impulse;
     const Contact& first = contacts[begin];
     meet(first.a, first.b, -1.0 * first.normal, m);
     meet(first.b, first.a, first.normal, m);
@@ -435,7 +460,8 @@ void ImpactRun::break_in_contact(const Meeting& m, double loss) {
   note_hit(m, answer);
   if (!(answer.blow.utilisation > 1) || !islands_[m.island].graph) return;
   const std::uint32_t wall = islands_[m.island].wall;
-  std::vector<Crack> broken = cracks(islands_[m.island], answer, 0, loss);
+  std::vector<Crack> broken =
+      cracks(islands_[m.island], answer, 0, std::min(loss, unspent_));
   if (broken.empty()) return;
   const std::size_t driven = broken.size();
   if (walls_[wall].material.stored_energy > 0) add_all_bonds(m.island, broken);
@@ -443,6 +469,7 @@ void ImpactRun::break_in_contact(const Meeting& m, double loss) {
   const double energy = walls_[wall].material.fracture_energy * freed.driven_area;
   result_.energy.fracture += energy;
   result_.energy.contact -= energy;  // the solver counted it there
+  unspent_ -= energy;
   recorder_.add_event({now_, wall, m.point, m.speed, answer.blow.utilisation, freed.bonds,
                        freed.chunks});
 }
@@ -459,7 +486,7 @@ void ImpactRun::split_chunk(const Meeting& m, double loss) {
   if (!(used > 1)) return;
   const auto count = static_cast<std::uint32_t>(std::clamp(2 + used, 3.0, 6.0));
   const double energy = wall.material.fracture_energy * 0.5 * count * size * thickness;
-  if (energy > loss) return;
+  if (energy > std::min(loss, unspent_)) return;
   const Vec3 c = wall.chunks[chunk].mass.centroid;
   const Vec3 at = inverse(pose_of(islands_[m.island])) * m.point;
   const Vec2 middle{0.5 * (c.x + at.x), 0.5 * (c.y + at.y)};
@@ -481,6 +508,7 @@ void ImpactRun::split_chunk(const Meeting& m, double loss) {
   result_.crack_area += 0.5 * count * size * thickness;
   result_.energy.fracture += energy;
   result_.energy.contact -= energy;
+  unspent_ -= energy;
   recorder_.add_event({now_, wall_index, m.point, m.speed, used, 0,
                        static_cast<std::uint32_t>(parts.size())});
 }

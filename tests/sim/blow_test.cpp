@@ -13,6 +13,14 @@
 namespace sunder {
 namespace {
 
+/// NDRC's limit of C30 (f_c = 38 MPa) under a ball.
+double ndrc_speed(double mass, double diameter, double thickness) {
+  ConcreteShot shot;
+  shot.mass = mass;
+  shot.diameter = diameter;
+  return ndrc_ballistic_speed(shot, thickness);
+}
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Material brittle(double density, double modulus, double ratio, double tensile, double compressive,
@@ -133,7 +141,7 @@ TEST(Blow, WreckingBallOnAConcreteWallIsGlobal) {
 TEST(Blow, BallOnAConcreteSlabIsLocalAndMatchesCeaEdf) {
   const Blow slow = blow_of({4.11, 0.05}, 40, 0.1, concrete());
   EXPECT_FALSE(slow.is_global);
-  EXPECT_EQ(slow.ballistic_speed, cea_edf_ballistic_speed(4.11, 0.1, 0.1, 38e6, 2400));
+  EXPECT_EQ(slow.ballistic_speed, ndrc_speed(4.11, 0.1, 0.1));
   EXPECT_LT(slow.utilisation, 1);
   EXPECT_EQ(slow.crack_radius, 0);
   const Blow fast = blow_of({4.11, 0.05}, 120, 0.1, concrete());
@@ -253,8 +261,10 @@ TEST(Blow, StressFallsWithDistanceAndIsTheStrengthAtTheCrackRadius) {
   }
 }
 
-// All lengths by s: stresses and speeds stay, forces grow by s², times by s (Hertz, plate, local).
+// All lengths by s: stresses and speeds stay, forces grow by s², times by s (Hertz, plate). NDRC's
+// limit is a fit in units of its own and does not scale.
 TEST(Blow, ScaleModelBreaksAtTheSameSpeed) {
+  int global = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Draws draw{seed};
     const double s = draw(0.01, 100), thickness = draw(1e-2, 1), speed = draw(0.1, 300);
@@ -266,12 +276,15 @@ TEST(Blow, ScaleModelBreaksAtTheSameSpeed) {
     ASSERT_EQ(model.is_global, blow.is_global);
     EXPECT_NEAR(model.force / (s * s) / blow.force, 1, 1e-12);
     EXPECT_NEAR(model.duration / s / blow.duration, 1, 1e-12);
+    if (!blow.is_global) continue;
+    ++global;
     EXPECT_NEAR(model.utilisation / blow.utilisation, 1, 1e-11);
     EXPECT_NEAR(model.crack_radius / s, blow.crack_radius, 1e-10 * blow.engaged_radius);
     if (blow.ballistic_speed < kInfinity) {
       EXPECT_NEAR(model.ballistic_speed / blow.ballistic_speed, 1, 1e-11);
     }
   }
+  EXPECT_GT(global, 20);
 }
 
 TEST(Blow, MaterialWithoutStrengthNeverBreaks) {
@@ -306,7 +319,7 @@ TEST(Blow, WithoutStiffnessOnlyTheLocalRuleIsLeft) {
   const Blow blow = blow_of({514, 0.25}, 10, 0.2, material);
   EXPECT_FALSE(blow.is_global);
   EXPECT_EQ(blow.force, 0);
-  EXPECT_EQ(blow.ballistic_speed, cea_edf_ballistic_speed(514, 0.5, 0.2, 38e6, 2400));
+  EXPECT_EQ(blow.ballistic_speed, ndrc_speed(514, 0.5, 0.2));
 }
 
 TEST(Blow, CrushingCapsTheForceAndHandsOnTheMomentumInTime) {

@@ -210,5 +210,18 @@ TEST(LocalBlow, PerforatesWhereAllFourFormulasDoAndStopsWhereNoneDoes) {
   RecordProperty("certain", certain);
 }
 
+TEST(Penetration, NdrcTheOtherWayRoundIsItsInverse) {
+  for (const double mass : {0.5, 4.11, 47.0, 500.0})
+    for (const double diameter : {0.03, 0.1, 0.3})
+      for (const double thickness : {0.05, 0.1, 0.25, 0.6, 2.0}) {
+        ConcreteShot shot;
+        shot.mass = mass;
+        shot.diameter = diameter;
+        shot.speed = ndrc_ballistic_speed(shot, thickness);
+        // The branches meet to 0.2 % at x/d = 1.35.
+        EXPECT_NEAR(ndrc(shot).perforation / thickness, 1, 2e-3) << mass << ' ' << diameter;
+      }
+}
+
 }  // namespace
 }  // namespace sunder
