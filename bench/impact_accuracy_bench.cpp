@@ -143,13 +143,15 @@ void residual_speeds() {
 
 // IRIS 2010: three repeats at 135 m/s went through with 33.8, 45.3 and 35.8 m/s.
 void iris() {
-  for (const double speed : {120.0, 135.0, 140.0, 150.0}) {
+  const double speed = 135;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Shot shot;
     shot.width = shot.height = 2.1, shot.thickness = 0.25;
     shot.material = "concrete-c50";
     shot.anchors = R"(["bottom", "left", "right", "top"])";
     shot.pattern = R"({"type": "voronoi-grid", "cell": 0.1})";
     shot.radius = 0.084, shot.mass = 47, shot.speed = speed, shot.duration = 0.1;
+    shot.seed = seed;
     ImpactScene scene = impact_scene_of(shot);
     Material& material = scene.walls[0].material;
     material.compressive_strength = 60e6, material.tensile_strength = 4e6;
@@ -157,15 +159,16 @@ void iris() {
     const ImpactResult result = simulate_impact(scene);
     char quantity[100];
     std::snprintf(quantity, sizeof quantity,
-                  "residual speed from %.0f m/s (limit %.1f, %.0f kg freed), m/s", speed,
-                  result.projectiles[0].ballistic_speed, result.freed_mass);
+                  "residual speed from %.0f m/s (limit %.1f, %.0f kg freed), seed %llu, m/s", speed,
+                  result.projectiles[0].ballistic_speed, result.freed_mass,
+                  static_cast<unsigned long long>(seed));
     print_accuracy_row({.name = "IRIS slab 2.1 × 2.1 × 0.25 m, 47 kg",
                         .quantity = quantity,
                         .step = "1/240 s",
                         .iterations = "20",
                         .measured = result.projectiles[0].residual_speed,
-                        .expected = speed == 135.0 ? 38.3 : 0,
-                        .source = speed == 135.0 ? "IRIS 2010, mean of 3" : "no test"});
+                        .expected = 38.3,
+                        .source = "IRIS 2010: 33.8, 45.3, 35.8"});
   }
 }
 

@@ -83,15 +83,17 @@ void ImpactRun::refuse_overlap(const Shot& shot) const {
   const SimulationParams& simulation = scene_.simulation;
   if (simulation.ground && p.position.y - p.radius < simulation.ground_height)
     fail("below the ground (y = " + std::to_string(simulation.ground_height) + " m)");
-  for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-    const WallState& wall = walls_[w];
-    const Vec3 local = inverse(pose_of(islands_[w])) * p.position;
+  for (std::uint32_t i = 0; i < islands_.size(); ++i) {
+    // Debris of an earlier hit may lie anywhere: contacts push out of it.
+    if (i >= walls_.size() && now_ > 0) break;
+    const WallState& wall = walls_[islands_[i].wall];
+    const Vec3 local = inverse(pose_of(islands_[i])) * p.position;
     const double beyond = std::max(std::abs(local.z) - wall.half_thickness, 0.0);
     if (beyond >= p.radius) continue;
     const double reach = std::sqrt(p.radius * p.radius - beyond * beyond);
     const Vec2 at{local.x, local.y}, half{reach, reach};
     for (const std::uint32_t cell : wall.bins.cells_in(at - half, at + half))
-      if (wall.chunks[wall.chunk_of_cell[cell]].island == w &&
+      if (wall.chunks[wall.chunk_of_cell[cell]].island == i &&
           distance_to_cell(wall.asset.pattern, cell, at) < reach)
         fail("inside wall \"" + wall.asset.wall.name + "\"");
   }
@@ -159,7 +161,9 @@ void ImpactRun::raise_colliders(double dt) {
     const RigidWorld::Bounds b = world_.bounds(body);
     const double speed = length(world_.velocity(body));
     // What a contact may add to its speed in this substep stays below this.
-    const double margin = 0.05 + (speed + scene_.simulation.gravity * dt) * dt;
+    const double turn = std::min(length(world_.angular_velocity(body)) * dt, 2.0);
+    const double margin = 0.05 + (speed + scene_.simulation.gravity * dt) * dt +
+                          turn * length(b.high - b.low);
     const Vec3 m{margin, margin, margin};
     for (std::uint32_t w = 0; w < walls_.size(); ++w) {
       const WallState& wall = walls_[w];

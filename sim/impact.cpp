@@ -83,7 +83,6 @@ void ImpactRun::own(BodyId body, Owner owner) {
 // most chunks is the wall.
 void ImpactRun::add_walls() {
   for (const ImpactWall& wall : scene_.walls) walls_.emplace_back(wall);
-  broken_pairs_.resize(walls_.size());
   least_thickness_ = std::numeric_limits<double>::infinity();
   std::vector<std::vector<std::vector<std::uint32_t>>> loose;
   for (std::uint32_t w = 0; w < walls_.size(); ++w) {
@@ -237,14 +236,14 @@ void ImpactRun::record(double time) {
   note_energy();
 }
 
-// Through is through: behind the far face, seen from where it hit.
+// Through is through: behind the far face of what is left, seen from where it hit.
 void ImpactRun::watch_projectiles() {
   for (std::uint32_t s = 0; s < shots_.size(); ++s) {
     const Shot& shot = shots_[s];
     ProjectileOutcome& outcome = result_.projectiles[s];
     if (shot.body == kNoBody || !outcome.hit || outcome.perforated) continue;
     const WallState& wall = walls_[shot.wall];
-    const Vec3 local = inverse(wall.standing) * world_.centre(shot.body);
+    const Vec3 local = inverse(pose_of(islands_[shot.wall])) * world_.centre(shot.body);
     if (-shot.side * local.z < wall.half_thickness + shot.projectile.radius) continue;
     if (local.x < wall.size_low.x || local.x > wall.size_high.x || local.y < wall.size_low.y ||
         local.y > wall.size_high.y)
@@ -298,7 +297,8 @@ ImpactResult ImpactRun::outcome() {
 }
 
 double ImpactRun::largest_energy_scale() const {
-  return std::max(1e-9, result_.energy.contact + result_.energy.friction);
+  const EnergyLedger& e = result_.energy;
+  return std::max({1e-9, e.contact + e.friction, -e.potential});
 }
 
 ImpactResult simulate_impact(const ImpactScene& scene, const ImpactParams& params) {

@@ -150,7 +150,7 @@ class ImpactRun {
 
   // islands.cpp: what hangs together, and the bodies it moves as.
   Freed break_bonds(std::uint32_t island, std::span<const Crack> cracks, std::size_t driven);
-  void note_broken(std::uint32_t island, const Bond& bond);
+  void note_broken(std::uint32_t island, Bond bond);
   void join_again(std::uint32_t island);
   Motion motion_of(const Island& island) const;
   std::uint32_t detach(std::uint32_t from, std::span<const std::uint32_t> locals,
@@ -181,8 +181,6 @@ class ImpactRun {
   double unspent_ = 0;           ///< energy that contacts took in the last substep, J, less cracks'
   double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
   std::vector<double> masses_;   ///< by BodyId, kg
-  /// Per wall: pairs of standing chunks whose bond broke, ascending.
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> broken_pairs_;
   std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
 };
 

@@ -22,7 +22,7 @@ ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Cra
     const Bond& bond = islands_[index].bonds[cracks[i].bond];
     result_.crack_area += bond.area;
     if (i < driven) freed.driven_area += bond.area;
-    if (islands_[index].body == kNoBody && bond.b != kWorld) note_broken(index, bond);
+    if (index < walls_.size() && walls_[index].web()) note_broken(index, bond);
   }
   std::ranges::sort(bonds);
   const SupportGraph::Change change =
@@ -42,11 +42,12 @@ ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Cra
   return freed;
 }
 
-void ImpactRun::note_broken(std::uint32_t index, const Bond& bond) {
+// A wall with a web may get new cells; they keep the cracks of the old ones.
+void ImpactRun::note_broken(std::uint32_t index, Bond bond) {
   const Island& island = islands_[index];
-  auto& pairs = broken_pairs_[island.wall];
-  const std::pair pair(island.chunks[bond.a], island.chunks[bond.b]);
-  pairs.insert(std::ranges::lower_bound(pairs, pair), pair);
+  bond.a = island.chunks[bond.a];
+  if (bond.b != kWorld) bond.b = island.chunks[bond.b];
+  walls_[island.wall].crack(bond);
 }
 
 // An island whose cells were replaced: its chunks and the bonds among them that never broke.
@@ -58,10 +59,10 @@ void ImpactRun::join_again(std::uint32_t index) {
     if (wall.chunks[c].island == index) members.push_back(c);
   std::vector<Bond> bonds;
   for (Bond bond : wall.asset.bonds) {
+    if (wall.is_cracked(bond)) continue;
     bond.a = wall.chunk_of_cell[bond.a];
     if (bond.b != kWorld) bond.b = wall.chunk_of_cell[bond.b];
-    if (!std::ranges::binary_search(broken_pairs_[wall_index], std::pair(bond.a, bond.b)))
-      bonds.push_back(bond);
+    bonds.push_back(bond);
   }
   Island island = make_island(wall, wall_index, members, bonds_among(members, bonds));
   island.body = islands_[index].body;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fracture/chunk_mesh.hpp"
+#include "meshing/triangulate.hpp"
 
 namespace sunder {
 namespace {
@@ -70,6 +71,35 @@ MassProperties prism_mass(std::span<const Vec2> p, double thickness) {
   m.centroid = {p[0].x + c.x, p[0].y + c.y, 0};
   m.inertia = {yy * t + zz, xx * t + zz, (xx + yy) * t, -xy * t, 0, 0};
   return m;
+}
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The edges of a cell that make its bond; `bond` counts in cells.
+template <typename Visit>
+void for_each_edge(const Pattern& pattern, const Bond& bond, Visit visit) {
+  for (const LoopRange loop : loops_of(pattern, bond.a))
+    for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
+      const std::uint32_t from = pattern.corners[k], to = pattern.corners[loop.next(k)];
+      const Vec2 edge = pattern.vertices[to] - pattern.vertices[from];
+      const Across across = pattern.across[k];
+      // Anchored borders are sides of a box, so the normal tells them apart.
+      const bool is_its = bond.b == kWorld
+                              ? across.is_border() && edge.y * bond.normal.x -
+                                                              edge.x * bond.normal.y >
+                                                          0.9 * length(edge)
+                              : across == Across::cell(bond.b);
+      if (is_its) visit(Edge(std::minmax(from, to)), length(edge));
+    }
+}
+
+/// Whether both ends of a border edge lie on another one.
+bool lies_on(const Pattern& pattern, Edge part, Edge whole) {
+  const Vec2 a = pattern.vertices[whole.first], b = pattern.vertices[whole.second];
+  const auto on = [&](Vec2 p) {
+    return orientation(a, b, p) == 0 && dot(p - a, b - a) >= 0 && dot(p - b, b - a) <= 0;
+  };
+  return on(pattern.vertices[part.first]) && on(pattern.vertices[part.second]);
 }
 
 /// Convex with room to spare, and not a splinter.
@@ -218,6 +248,41 @@ BodyParams WallState::body_of(const std::vector<std::uint32_t>& members) const {
   return body;
 }
 
+void WallState::crack(Bond bond) {
+  bond.a = chunks[bond.a].cell;
+  if (bond.b != kWorld) bond.b = chunks[bond.b].cell;
+  for_each_edge(asset.pattern, bond, [&](Edge edge, double) {
+    const auto at = std::ranges::lower_bound(cracked_edges, edge);
+    if (at == cracked_edges.end() || *at != edge) cracked_edges.insert(at, edge);
+  });
+}
+
+bool WallState::is_cracked(const Bond& bond) const {
+  double cracked = 0, all = 0;
+  for_each_edge(asset.pattern, bond, [&](Edge edge, double size) {
+    all += size;
+    if (std::ranges::binary_search(cracked_edges, edge)) cracked += size;
+  });
+  return cracked > 0.5 * all;
+}
+
+// A border that cracked stays so when new cells cut it into several edges.
+void WallState::crack_parts_of_borders(std::span<const std::uint32_t> fresh) {
+  const std::vector<Edge> before = cracked_edges;
+  if (before.empty()) return;
+  const Pattern& pattern = asset.pattern;
+  for (const std::uint32_t chunk : fresh)
+    for (const LoopRange loop : loops_of(pattern, chunks[chunk].cell))
+      for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
+        if (!pattern.across[k].is_border()) continue;
+        const Edge edge = std::minmax(pattern.corners[k], pattern.corners[loop.next(k)]);
+        if (std::ranges::any_of(before, [&](Edge e) { return lies_on(pattern, edge, e); }))
+          cracked_edges.push_back(edge);
+      }
+  std::ranges::sort(cracked_edges);
+  cracked_edges.erase(std::ranges::unique(cracked_edges).begin(), cracked_edges.end());
+}
+
 std::vector<std::uint32_t> WallState::replace(std::span<const std::uint32_t> removed,
                                               std::span<const Vec2> new_vertices,
                                               std::span<const NewCell> added) {
@@ -239,6 +304,7 @@ std::vector<std::uint32_t> WallState::replace(std::span<const std::uint32_t> rem
   asset = std::move(replaced.asset);
   chunk_of_cell = std::move(chunk_of);
   bins = CellBins(asset.pattern);
+  crack_parts_of_borders(fresh);
   return fresh;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fracture/recover.hpp"
@@ -69,6 +70,8 @@ struct WallState {
   std::vector<ChunkState> chunks;
   std::vector<std::uint32_t> chunk_of_cell;
   std::vector<Vec2> split_points;  ///< vertices that parts have and the pattern has not
+  /// Edges of the pattern along which bonds broke: their vertices, the smaller first; ascending.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> cracked_edges;
   std::uint32_t hits = 0;          ///< that broke something
   bool touched = false;
 
@@ -81,6 +84,12 @@ struct WallState {
   Surface surface() const { return {material.friction, material.restitution}; }
   const SpiderwebParams* web() const { return std::get_if<SpiderwebParams>(&asset.wall.pattern); }
 
+  /// Notes that a bond between these chunks, or to the world, broke.
+  void crack(Bond bond);
+  /// Whether most of a bond of the asset lies along edges that cracked, whatever cells they
+  /// belonged to then.
+  bool is_cracked(const Bond& bond) const;
+
   /// Replaces cells; chunks of those that stay keep their numbers, new ones get the next. Returns
   /// the chunks of `added`.
   std::vector<std::uint32_t> replace(std::span<const std::uint32_t> removed,
@@ -92,6 +101,7 @@ struct WallState {
   /// Vertices of a convex chunk, counter-clockwise; empty for another.
   std::vector<std::uint32_t> outline_of(const ChunkState& state) const;
   std::vector<Vec2> places(std::span<const std::uint32_t> loop) const;
+  void crack_parts_of_borders(std::span<const std::uint32_t> fresh);
   std::vector<std::uint32_t> add_parts(std::uint32_t chunk,
                                        std::span<const std::vector<std::uint32_t>> parts);
   /// The wall with all parts in the place of what they came from, and each chunk's island.
