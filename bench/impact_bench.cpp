@@ -54,8 +54,9 @@ ImpactResult best_run(const ImpactScene& scene, bool skip) {
 }
 
 void compare_steps() {
-  std::printf("| chunks | method | median ms | p95 ms | longest ms | steps |\n"
-              "|---|---|---|---|---|---|\n");
+  std::printf(
+      "| chunks | method | median ms | p95 ms | longest ms | steps |\n"
+      "|---|---|---|---|---|---|\n");
   for (const int size : {300, 3000, 30000}) {
     const ImpactScene scene = scene_of(size);
     const auto chunks = static_cast<int>(scene.walls[0].asset.chunks.size());
@@ -64,13 +65,12 @@ void compare_steps() {
       std::printf("| %d | sunder%s (%llu chunks freed) | %.3g | %.3g | %.3g | %llu |\n", chunks,
                   skip ? "" : ", nothing skipped",
                   static_cast<unsigned long long>(best.chunks_freed), best.step_ms_median,
-                  best.step_ms_p95, best.step_ms_max,
-                  static_cast<unsigned long long>(best.steps));
+                  best.step_ms_p95, best.step_ms_max, static_cast<unsigned long long>(best.steps));
     }
     for (const int iterations : {10, 50, 200}) {
-      const auto ms = step_jointed_wall(scene.walls[0].asset,
-                                        scene.walls[0].material.tensile_strength,
-                                        scene.projectiles[0], kStep, iterations, 240, 5);
+      const auto ms =
+          step_jointed_wall(scene.walls[0].asset, scene.walls[0].material.tensile_strength,
+                            scene.projectiles[0], kStep, iterations, 240, 5);
       print_steps(("Bullet, all active, " + std::to_string(iterations) + " iterations").c_str(),
                   chunks, ms);
     }
@@ -98,8 +98,9 @@ std::vector<std::uint32_t> bonds_near(const WallAsset& wall, Vec3 centre, double
 }
 
 void compare_islands() {
-  std::printf("\n| chunks | chunks freed | bounded search µs | whole graph µs | graph built anew µs "
-              "| chunks searched |\n|---|---|---|---|---|---|\n");
+  std::printf(
+      "\n| chunks | chunks freed | bounded search µs | whole graph µs | graph built anew µs "
+      "| chunks searched |\n|---|---|---|---|---|---|\n");
   for (const int size : {300, 3000, 30000, 300000}) {
     const ImpactScene scene = scene_of(size);
     const WallAsset& wall = scene.walls[0].asset;
@@ -111,10 +112,12 @@ void compare_islands() {
     SupportGraph::Change change;
     std::size_t freed = 0;
     const auto prepare = [&] { graph = intact; };
-    const double bounded = best_of(7, [&] { change = graph.break_bonds(bonds); }, prepare);
+    const double bounded = best_of(
+        7, [&] { change = graph.break_bonds(bonds); }, prepare);
     for (const auto& island : change.islands) freed += island.chunks.size();
     const std::uint64_t searched = change.chunks_searched;
-    const double whole = best_of(7, [&] { change = graph.break_bonds(bonds, true); }, prepare);
+    const double whole = best_of(
+        7, [&] { change = graph.break_bonds(bonds, true); }, prepare);
     const double anew = best_of(
         7, [&] { SupportGraph(count, wall.bonds).break_bonds(bonds, true); }, [] {});
     std::printf("| %u | %zu | %.1f | %.1f | %.1f | %llu |\n", count, freed, bounded, whole, anew,

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/peers_bullet.hpp"
+
 #include <btBulletDynamicsCommon.h>
 
 #include <chrono>
 #include <memory>
 
-#include "bench/peers_bullet.hpp"
 #include "fracture/chunk_mesh.hpp"
 
 namespace sunder {
@@ -18,7 +19,8 @@ btVector3 as_bullet(Vec3 v) {
 class JointedWall {
  public:
   JointedWall(const WallAsset& wall, double strength, double dt, int iterations)
-      : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
+      : dispatcher_(&configuration_),
+        world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
     world_.setGravity({0, -9.81, 0});
     world_.getSolverInfo().m_numIterations = iterations;
     add_static(new btStaticPlaneShape({0, 1, 0}, 0));

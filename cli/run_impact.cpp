@@ -25,11 +25,12 @@ void print_projectile(const ProjectileOutcome& p) {
   if (!p.hit) {
     std::fprintf(stderr, "%s: met no wall\n", p.name.c_str());
   } else if (p.perforated) {
-    std::fprintf(stderr, "%s: %.4g m/s in, %.4g m/s behind the wall (which it needs %.4g m/s for)\n",
+    std::fprintf(stderr,
+                 "%s: %.4g m/s in, %.4g m/s behind the wall (which it needs %.4g m/s for)\n",
                  p.name.c_str(), p.speed_before, p.residual_speed, p.ballistic_speed);
   } else {
-    std::fprintf(stderr, "%s: %.4g m/s in, did not get through (%.4g m/s needed)\n",
-                 p.name.c_str(), p.speed_before, p.ballistic_speed);
+    std::fprintf(stderr, "%s: %.4g m/s in, did not get through (%.4g m/s needed)\n", p.name.c_str(),
+                 p.speed_before, p.ballistic_speed);
   }
 }
 
@@ -95,8 +96,8 @@ int run_impact(const Options& options) {
     if (path.extension() != ".json") export_recording(result.recording, path, recording);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const std::string text = impact_report_json(
-      {SUNDER_VERSION, scene.seed, result, took.count(), watch.steps()});
+  const std::string text =
+      impact_report_json({SUNDER_VERSION, scene.seed, result, took.count(), watch.steps()});
   if (options.json) std::fputs(text.c_str(), stdout);
   if (!options.report.empty()) write_file(options.report, text);
   for (const auto& path : options.outputs)

@@ -18,15 +18,16 @@ const ImportedWall& choose_wall(const ImportedAsset& asset, const Wall& wall) {
   std::string names;
   for (const ImportedWall& each : asset.walls) names += (names.empty() ? "" : ", ") + each.name;
   throw Error(ErrorCode::input, wall.asset + ": holds several walls (" + names +
-                                    "); give the scene's wall the name of one, not \"" +
-                                    wall.name + "\"");
+                                    "); give the scene's wall the name of one, not \"" + wall.name +
+                                    "\"");
 }
 
 ImpactWall import_wall(const Scene& scene, Wall wall) {
   const ImportedAsset asset = import_asset(wall.asset);
   if (!asset.has_chunks)
-    throw Error(ErrorCode::input, wall.asset + ": the format keeps no chunks apart; an asset is a "
-                                               ".glb, .gltf or .obj that sunder fracture wrote");
+    throw Error(ErrorCode::input, wall.asset +
+                                      ": the format keeps no chunks apart; an asset is a "
+                                      ".glb, .gltf or .obj that sunder fracture wrote");
   const ImportedWall& imported = choose_wall(asset, wall);
   if (wall.material.empty()) wall.material = imported.material;
   if (wall.material.empty())

@@ -47,20 +47,19 @@ Blow edge_blow_of(const Striker& striker, double speed, double thickness,
   if (!(material.youngs_modulus > 0) || !(speed > 0)) return blow;
   const double modulus = contact_modulus(striker, material);
   blow.force = edge_force_of(striker, speed, material);
-  blow.duration = 2.87 * power_of(striker.mass * striker.mass /
-                                      (striker.radius * modulus * modulus * speed),
-                                  0.2);
-  const double shear_speed = std::sqrt(material.youngs_modulus /
-                                       (2 * (1 + material.poisson_ratio) * material.density));
+  blow.duration =
+      2.87 *
+      power_of(striker.mass * striker.mass / (striker.radius * modulus * modulus * speed), 0.2);
+  const double shear_speed =
+      std::sqrt(material.youngs_modulus / (2 * (1 + material.poisson_ratio) * material.density));
   blow.engaged_radius = shear_speed * blow.duration;
   if (!(material.tensile_strength > 0)) return blow;
   const double needed = least_edge_force(striker, thickness, material);
   blow.utilisation = blow.force / needed;
-  blow.crack_radius =
-      blow.utilisation > 1
-          ? std::min(blow.force / (kPi * thickness * material.tensile_strength),
-                     blow.engaged_radius)
-          : 0;
+  blow.crack_radius = blow.utilisation > 1
+                          ? std::min(blow.force / (kPi * thickness * material.tensile_strength),
+                                     blow.engaged_radius)
+                          : 0;
   // The force grows with speed until crushing caps it: bisection on a bracket that holds it.
   double low = 0, high = 1e5;
   if (edge_force_of(striker, high, material) < needed) return blow;

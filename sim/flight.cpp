@@ -109,11 +109,20 @@ double gap_between(const RigidWorld::Bounds& a, Vec3 low, Vec3 high) {
 
 }  // namespace
 
+/// Whether any chunk of a wall stands.
+bool ImpactRun::stands(std::uint32_t wall) const {
+  const Island& island = islands_[wall];
+  return island.body == kNoBody && (!island.graph || island.graph->present_count() > 0);
+}
+
 ImpactRun::NearWall ImpactRun::nearest_wall(const RigidWorld::Bounds& bounds) const {
   NearWall nearest;
-  for (const WallState& wall : walls_)
+  for (std::uint32_t w = 0; w < walls_.size(); ++w) {
+    const WallState& wall = walls_[w];
+    if (!stands(w)) continue;
     if (const double gap = gap_between(bounds, wall.low, wall.high); gap < nearest.gap)
       nearest = {gap, 2 * wall.half_thickness};
+  }
   return nearest;
 }
 
@@ -149,8 +158,8 @@ double ImpactRun::distance_limit(double dt) const {
     if (shot.body == kNoBody || !world_.is_awake(shot.body)) continue;
     const double speed = length(world_.velocity(shot.body));
     if (speed * limit <= share * shot.projectile.radius) continue;
-    limit = std::min(limit,
-                     std::max(share * shot.projectile.radius, 0.5 * nearest_gap(shot)) / speed);
+    limit =
+        std::min(limit, std::max(share * shot.projectile.radius, 0.5 * nearest_gap(shot)) / speed);
   }
   return limit;
 }
@@ -162,8 +171,8 @@ void ImpactRun::raise_colliders(double dt) {
     const double speed = length(world_.velocity(body));
     // What a contact may add to its speed in this substep stays below this.
     const double turn = std::min(length(world_.angular_velocity(body)) * dt, 2.0);
-    const double margin = 0.05 + (speed + scene_.simulation.gravity * dt) * dt +
-                          turn * length(b.high - b.low);
+    const double margin =
+        0.05 + (speed + scene_.simulation.gravity * dt) * dt + turn * length(b.high - b.low);
     const Vec3 m{margin, margin, margin};
     for (std::uint32_t w = 0; w < walls_.size(); ++w) {
       const WallState& wall = walls_[w];
@@ -192,8 +201,8 @@ void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
   Vec3 from{1e300, 1e300, 1e300}, to{-1e300, -1e300, -1e300};
   const Pose back = inverse(wall.standing);
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p = back * Vec3{i & 1 ? low.x : high.x, i & 2 ? low.y : high.y,
-                               i & 4 ? low.z : high.z};
+    const Vec3 p =
+        back * Vec3{i & 1 ? low.x : high.x, i & 2 ? low.y : high.y, i & 4 ? low.z : high.z};
     from = {std::min(from.x, p.x), std::min(from.y, p.y), std::min(from.z, p.z)};
     to = {std::max(to.x, p.x), std::max(to.y, p.y), std::max(to.z, p.z)};
   }
@@ -238,8 +247,7 @@ std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_ground(std::uint32_t s, 
   const double gap = centre.y - shot.projectile.radius - simulation.ground_height;
   const double speed = -world_.velocity(shot.body).y, g = simulation.gravity;
   // The solver takes the speed at a substep's end for the whole of it: leave it that much room.
-  const double room =
-      std::max(gap - 0.5 * g * dt * dt - kRoom * shot.projectile.radius, 0.0);
+  const double room = std::max(gap - 0.5 * g * dt * dt - kRoom * shot.projectile.radius, 0.0);
   const double time = time_to(room, speed, g);
   if (!(time <= dt) || !(speed + g * time > least_arrival_speed())) return {};
   const double height = simulation.ground_height;
@@ -303,10 +311,9 @@ Surface ImpactRun::ground_surface() const {
 }
 
 // Closed form: normal impulse by restitution, tangential one by Coulomb until it no longer slides.
-void ImpactRun::bounce(const Meeting& m, BodyId other, const Surface& surface) {
+void ImpactRun::bounce(const Meeting& m, BodyId other, const Surface& surface, double spent) {
   const Owner& who = owner(m.striker);
   const Projectile& p = shots_[who.index].projectile;
-  const double e = std::sqrt(p.restitution * surface.restitution);
   const double mu = std::sqrt(p.friction * surface.friction);
   const auto relative = [&] {
     const Vec3 v = world_.velocity_at(m.striker, m.point);
@@ -318,9 +325,14 @@ void ImpactRun::bounce(const Meeting& m, BodyId other, const Surface& surface) {
   };
   const auto push = [&](Vec3 impulse) {
     world_.apply_impulse(m.striker, impulse, m.point);
-    if (other == kNoBody) impulse_ = impulse_ + impulse;
-    else world_.apply_impulse(other, -1.0 * impulse, m.point);
+    if (other == kNoBody)
+      impulse_ = impulse_ + impulse;
+    else
+      world_.apply_impulse(other, -1.0 * impulse, m.point);
   };
+  // What cracks took does not come back: e² is the share of the energy that does.
+  const double lost = 2 * spent * inverse_mass(m.normal) / (m.speed * m.speed);
+  const double e = std::sqrt(std::clamp(1 - lost, 0.0, p.restitution * surface.restitution));
   const double before = world_.kinetic_energy();
   const double normal_impulse = (1 + e) * m.speed / inverse_mass(m.normal);
   push(normal_impulse * m.normal);

@@ -113,8 +113,10 @@ std::vector<std::vector<std::uint32_t>> ImpactRun::add_wall(std::uint32_t w) {
   std::vector<std::uint32_t> main;
   for (std::uint32_t c = 0; c < count; ++c) {
     const std::uint32_t root = parts.root[c];
-    if (anchored ? parts.anchored[root] != 0 : root == largest) main.push_back(c);
-    else if (root == c) loose.push_back(members[c]);
+    if (anchored ? parts.anchored[root] != 0 : root == largest)
+      main.push_back(c);
+    else if (root == c)
+      loose.push_back(members[c]);
   }
   islands_.push_back(main.size() == count
                          ? make_island(walls_[w], w, std::move(main), bonds)

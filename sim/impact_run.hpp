@@ -63,7 +63,7 @@ class ImpactRun {
   struct Answer {
     Blow blow;
     bool in_plane = false;
-    Vec2 centre;  ///< contact in the wall's frame
+    Vec2 centre;       ///< contact in the wall's frame
     double front = 1;  ///< side of the contact, ±1 along the wall's z
     Striker striker;
   };
@@ -103,6 +103,7 @@ class ImpactRun {
   void launch(std::uint32_t shot);
   void refuse_overlap(const Shot& shot) const;
   double distance_limit(double dt) const;
+  bool stands(std::uint32_t wall) const;
   NearWall nearest_wall(const RigidWorld::Bounds& bounds) const;
   double nearest_gap(const Shot& shot) const;
   void raise_colliders(double dt);
@@ -113,8 +114,9 @@ class ImpactRun {
   std::optional<Arrival> arrival_at_wall(std::uint32_t shot, std::uint32_t wall, double dt) const;
   bool is_there(const Arrival& arrival) const;
   void arrive(const Arrival& arrival);
-  /// A projectile bounces off something solid (kNoBody) or off a body.
-  void bounce(const Meeting& meeting, BodyId other, const Surface& surface);
+  /// A projectile bounces off something solid (kNoBody) or off a body; cracks that the blow made
+  /// cost it `spent` J at least.
+  void bounce(const Meeting& meeting, BodyId other, const Surface& surface, double spent = 0);
   Surface ground_surface() const;
   double least_arrival_speed() const;
 
@@ -136,6 +138,7 @@ class ImpactRun {
   void weave_web(std::uint32_t island, const Answer& answer, double footprint, double speed,
                  double budget);
   double usable_speed(const Meeting& meeting) const;
+  void take_from_rebound(const Meeting& meeting, double energy);
   void go_through(Meeting meeting, const Answer& answer);
   bool hand_over(const Meeting& meeting, const Answer& answer, const Freed& freed, double mass,
                  double footprint);
@@ -155,8 +158,7 @@ class ImpactRun {
   Motion motion_of(const Island& island) const;
   std::uint32_t detach(std::uint32_t from, std::span<const std::uint32_t> locals,
                        const Motion& motion);
-  std::vector<Bond> intact_bonds(const Island& island,
-                                 std::span<const std::uint32_t> locals) const;
+  std::vector<Bond> intact_bonds(const Island& island, std::span<const std::uint32_t> locals) const;
   bool keep_rest(std::uint32_t island, const Motion& motion);
   std::uint32_t free_island(std::uint32_t wall, std::vector<std::uint32_t> members,
                             std::span<const Bond> bonds);
@@ -169,18 +171,18 @@ class ImpactRun {
   std::vector<WallState> walls_;
   std::vector<Island> islands_;  ///< the first ones are the walls'
   std::vector<Shot> shots_;
-  std::vector<Owner> owners_;    ///< by BodyId
+  std::vector<Owner> owners_;        ///< by BodyId
   std::vector<std::uint32_t> live_;  ///< islands with a body
   Recorder recorder_;
   ImpactResult result_;
   double now_ = 0;
-  double least_thickness_ = 0;   ///< of all walls, m
-  std::uint64_t serial_ = 0;     ///< of bodies, for their order
-  double baseline_ = 0;          ///< potential energy of all bodies where they started, J
-  Vec3 impulse_;                 ///< that ground and anchors gave, N s
-  double unspent_ = 0;           ///< energy that contacts took in the last substep, J, less cracks'
+  double least_thickness_ = 0;  ///< of all walls, m
+  std::uint64_t serial_ = 0;    ///< of bodies, for their order
+  double baseline_ = 0;         ///< potential energy of all bodies where they started, J
+  Vec3 impulse_;                ///< that ground and anchors gave, N s
+  double unspent_ = 0;          ///< energy that contacts took in the last substep, J, less cracks'
   double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
-  std::vector<double> masses_;   ///< by BodyId, kg
+  std::vector<double> masses_;        ///< by BodyId, kg
   std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
 };
 

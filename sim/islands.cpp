@@ -25,13 +25,12 @@ ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Cra
     if (index < walls_.size() && walls_[index].web()) note_broken(index, bond);
   }
   std::ranges::sort(bonds);
-  const SupportGraph::Change change =
-      islands_[index].graph->break_bonds(bonds, !params_.skip);
+  const SupportGraph::Change change = islands_[index].graph->break_bonds(bonds, !params_.skip);
   freed.bonds = static_cast<std::uint32_t>(change.broken.size());
   result_.broken_bonds += change.broken.size();
-  result_.cells_not_searched += islands_[index].graph->present_count() -
-                                std::min<std::uint64_t>(change.chunks_searched,
-                                                        islands_[index].graph->present_count());
+  result_.cells_not_searched +=
+      islands_[index].graph->present_count() -
+      std::min<std::uint64_t>(change.chunks_searched, islands_[index].graph->present_count());
   if (change.islands.empty()) return freed;
   const Motion motion = motion_of(islands_[index]);
   for (const SupportGraph::Island& part : change.islands) {

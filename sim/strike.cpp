@@ -74,19 +74,15 @@ ImpactRun::Answer ImpactRun::answer_to(const Meeting& m) const {
   answer.in_plane = std::abs(normal.z) < kFaceContact;
   answer.striker = striker_of(m);
   const double thickness = 2 * wall.half_thickness;
-  answer.blow = answer.in_plane
-                    ? edge_blow_of(answer.striker, m.speed, thickness, wall.material)
-                    : blow_of(answer.striker, m.speed, thickness, wall.material);
+  answer.blow = answer.in_plane ? edge_blow_of(answer.striker, m.speed, thickness, wall.material)
+                                : blow_of(answer.striker, m.speed, thickness, wall.material);
   return answer;
 }
 
-double ImpactRun::utilisation(const Answer& answer, double distance,
-                              const WallState& wall) const {
+double ImpactRun::utilisation(const Answer& answer, double distance, const WallState& wall) const {
   const double thickness = 2 * wall.half_thickness;
-  if (answer.in_plane)
-    return edge_utilisation_at(answer.blow, distance, thickness, wall.material);
-  if (answer.blow.is_global)
-    return utilisation_at(answer.blow, distance, thickness, wall.material);
+  if (answer.in_plane) return edge_utilisation_at(answer.blow, distance, thickness, wall.material);
+  if (answer.blow.is_global) return utilisation_at(answer.blow, distance, thickness, wall.material);
   return 0;
 }
 
@@ -135,8 +131,8 @@ std::vector<std::uint32_t> ImpactRun::chunks_near(const Island& island, Vec2 cen
   return locals;
 }
 
-// What the striker touches is in its way. The plug of a light one is wider: chunks whose middle lies
-// in it, so that its mass does not depend on their size.
+// What the striker touches is in its way. The plug of a light one is wider: chunks whose middle
+// lies in it, so that its mass does not depend on their size.
 bool ImpactRun::is_in_footprint(const WallState& wall, const ChunkState& chunk,
                                 const Answer& answer, double footprint) const {
   if (chunk.cell == kNoCell || !(footprint > 0)) return false;
@@ -146,8 +142,8 @@ bool ImpactRun::is_in_footprint(const WallState& wall, const ChunkState& chunk,
              std::min(answer.striker.radius, footprint);
 }
 
-// Bonds that the blow over-stresses, most over-stressed first, as far as the energy lasts. What lies
-// in the footprint is sheared out whatever its bonds' distance.
+// Bonds that the blow over-stresses, most over-stressed first, as far as the energy lasts. What
+// lies in the footprint is sheared out whatever its bonds' distance.
 std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answer& answer,
                                                 double footprint, double budget) const {
   const WallState& wall = walls_[island.wall];
@@ -171,8 +167,7 @@ std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answ
 
 // The most used first, as far as the energy lasts; a bond found from both its chunks counts once,
 // with the larger demand.
-std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island,
-                                                    std::vector<Crack> found,
+std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island, std::vector<Crack> found,
                                                     double budget) const {
   std::ranges::sort(found, [](const Crack& a, const Crack& b) {
     return a.bond != b.bond ? a.bond < b.bond : a.utilisation > b.utilisation;
@@ -205,8 +200,7 @@ SpiderwebParams ImpactRun::web_of(const WallState& wall, const Answer& answer, d
   // Spokes, the polygon around them and the rings: no larger than the energy pays for.
   const double length_per_radius =
       static_cast<double>(corners) + 6.3 * (1 + 0.5 * static_cast<double>(params.rings));
-  const double energy_per_radius =
-      length_per_radius * thickness * wall.material.fracture_energy;
+  const double energy_per_radius = length_per_radius * thickness * wall.material.fracture_energy;
   params.max_radius = std::max(answer.blow.crack_radius, 1.25 * footprint);
   if (energy_per_radius > 0)
     params.max_radius = std::clamp(budget / energy_per_radius, 0.5 * footprint, params.max_radius);
@@ -222,18 +216,17 @@ SpiderwebParams ImpactRun::web_of(const WallState& wall, const Answer& answer, d
   return params;
 }
 
-void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double footprint,
-                          double speed, double budget) {
+void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double footprint, double speed,
+                          double budget) {
   const std::uint32_t wall_index = islands_[index].wall;
   WallState& wall = walls_[wall_index];
   const std::uint64_t seed = random_bits(scene_.seed, wall_index, wall.hits);
   std::vector<std::uint8_t> intact(wall.asset.pattern.cell_count());
   for (std::uint32_t cell = 0; cell < intact.size(); ++cell)
     intact[cell] = wall.chunks[wall.chunk_of_cell[cell]].island == index;
-  const LocalWeb web =
-      local_web(wall.asset, intact, answer.centre,
-                web_of(wall, answer, footprint, speed, budget, seed), seed,
-                wall.bins.cell_at(wall.asset.pattern, answer.centre));
+  const LocalWeb web = local_web(wall.asset, intact, answer.centre,
+                                 web_of(wall, answer, footprint, speed, budget, seed), seed,
+                                 wall.bins.cell_at(wall.asset.pattern, answer.centre));
   if (web.added.empty()) return;
   for (const std::uint32_t cell : web.removed) lower_collider(wall_index, wall.chunk_of_cell[cell]);
   const std::vector<std::uint32_t> fresh = wall.replace(web.removed, web.new_vertices, web.added);
@@ -275,12 +268,24 @@ double ImpactRun::usable_speed(const Meeting& m) const {
   return std::clamp(std::min(taken, lost), 0.0, m.speed);
 }
 
+// Energy of cracks that the solver had left to a striker it threw back.
+void ImpactRun::take_from_rebound(const Meeting& m, double energy) {
+  const double left = -dot(world_.velocity_at(m.striker, m.point), m.normal);
+  if (!(energy > 0) || left >= 0) return;
+  const double mass = 1 / world_.inverse_mass_at(m.striker, m.point, m.normal);
+  const double then = -std::sqrt(std::max(left * left - 2 * energy / mass, 0.0));
+  const Vec3 impulse = mass * (left - then) * m.normal;
+  world_.apply_impulse(m.striker, impulse, m.point);
+  impulse_ = impulse_ + impulse;
+}
+
 void ImpactRun::go_through(Meeting m, const Answer& answer) {
   m.speed = usable_speed(m);
   const std::uint32_t wall_index = islands_[m.island].wall;
   const double mass = 1 / world_.inverse_mass_at(m.striker, m.point, m.normal);
   const Material material = walls_[wall_index].material;
-  const double budget = 0.5 * mass * m.speed * m.speed;
+  // A free wall moves off with a part of the energy: the reduced mass counts.
+  const double budget = 0.5 * std::min(mass, answer.striker.mass) * m.speed * m.speed;
   const bool local = !answer.blow.is_global;
   const double footprint = local ? answer.blow.crack_radius : answer.striker.radius;
   const double energy_before = world_.kinetic_energy();
@@ -296,15 +301,17 @@ void ImpactRun::go_through(Meeting m, const Answer& answer) {
   const Freed freed = break_bonds(m.island, broken, driven);
   woven_.clear();
   walls_[wall_index].hits += !broken.empty();
-  result_.energy.fracture += material.fracture_energy * freed.driven_area;
-  recorder_.add_event({now_, wall_index, m.point, m.speed, answer.blow.utilisation, freed.bonds,
-                       freed.chunks});
+  const double crack_energy = material.fracture_energy * freed.driven_area;
+  result_.energy.fracture += crack_energy;
+  recorder_.add_event(
+      {now_, wall_index, m.point, m.speed, answer.blow.utilisation, freed.bonds, freed.chunks});
   const bool passed = hand_over(m, answer, freed, mass, footprint);
-  const double spent = world_.kinetic_energy() - energy_before +
-                       material.fracture_energy * freed.driven_area;
+  if (!passed && m.solved) take_from_rebound(m, crack_energy - unspent_);
+  const double spent = world_.kinetic_energy() - energy_before + crack_energy;
   result_.energy.contact -= spent;
   if (m.solved) unspent_ = std::max(unspent_ - spent, 0.0);
-  if (!passed && !m.solved) bounce(m, islands_[m.island].body, walls_[wall_index].surface());
+  if (!passed && !m.solved)
+    bounce(m, islands_[m.island].body, walls_[wall_index].surface(), crack_energy);
 }
 
 // Momentum from the striker to what came loose: everything in its way moves on with it. False when
@@ -314,8 +321,8 @@ bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& f
   const WallState& wall = walls_[islands_[m.island].wall];
   const double density = wall.material.density;
   // What a light striker punches out moves as one plug.
-  const double spread = answer.blow.is_global ? 2 * wall.half_thickness
-                                              : std::numeric_limits<double>::infinity();
+  const double spread =
+      answer.blow.is_global ? 2 * wall.half_thickness : std::numeric_limits<double>::infinity();
   const SpeedProfile profile{answer.centre, footprint, spread};
   double plug = 0, plug_energy = 0;  // Σ m φ, Σ m φ²
   bool way_is_free = false;
@@ -436,11 +443,13 @@ void ImpactRun::meet(BodyId struck, BodyId striker, Vec3 normal, Meeting m) {
     if (!is_gentle(m)) strike(m);
   } else if (what.kind == Owner::Kind::island) {
     m.island = what.index;
-    const double e = std::sqrt(walls_[islands_[m.island].wall].material.restitution *
-                               restitution_of(striker));
+    const double e =
+        std::sqrt(walls_[islands_[m.island].wall].material.restitution * restitution_of(striker));
     const double loss = 0.5 * striker_of(m).mass * m.speed * m.speed * (1 - e * e);
-    if (islands_[m.island].chunks.size() == 1) split_chunk(m, loss);
-    else if (!is_gentle(m)) break_in_contact(m, loss);
+    if (islands_[m.island].chunks.size() == 1)
+      split_chunk(m, loss);
+    else if (!is_gentle(m))
+      break_in_contact(m, loss);
   }
 }
 
@@ -460,8 +469,7 @@ void ImpactRun::break_in_contact(const Meeting& m, double loss) {
   note_hit(m, answer);
   if (!(answer.blow.utilisation > 1) || !islands_[m.island].graph) return;
   const std::uint32_t wall = islands_[m.island].wall;
-  std::vector<Crack> broken =
-      cracks(islands_[m.island], answer, 0, std::min(loss, unspent_));
+  std::vector<Crack> broken = cracks(islands_[m.island], answer, 0, std::min(loss, unspent_));
   if (broken.empty()) return;
   const std::size_t driven = broken.size();
   if (walls_[wall].material.stored_energy > 0) add_all_bonds(m.island, broken);
@@ -470,8 +478,8 @@ void ImpactRun::break_in_contact(const Meeting& m, double loss) {
   result_.energy.fracture += energy;
   result_.energy.contact -= energy;  // the solver counted it there
   unspent_ -= energy;
-  recorder_.add_event({now_, wall, m.point, m.speed, answer.blow.utilisation, freed.bonds,
-                       freed.chunks});
+  recorder_.add_event(
+      {now_, wall, m.point, m.speed, answer.blow.utilisation, freed.bonds, freed.chunks});
 }
 
 void ImpactRun::split_chunk(const Meeting& m, double loss) {
@@ -509,8 +517,8 @@ void ImpactRun::split_chunk(const Meeting& m, double loss) {
   result_.energy.fracture += energy;
   result_.energy.contact -= energy;
   unspent_ -= energy;
-  recorder_.add_event({now_, wall_index, m.point, m.speed, used, 0,
-                       static_cast<std::uint32_t>(parts.size())});
+  recorder_.add_event(
+      {now_, wall_index, m.point, m.speed, used, 0, static_cast<std::uint32_t>(parts.size())});
 }
 
 }  // namespace sunder

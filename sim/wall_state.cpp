@@ -84,11 +84,10 @@ void for_each_edge(const Pattern& pattern, const Bond& bond, Visit visit) {
       const Vec2 edge = pattern.vertices[to] - pattern.vertices[from];
       const Across across = pattern.across[k];
       // Anchored borders are sides of a box, so the normal tells them apart.
-      const bool is_its = bond.b == kWorld
-                              ? across.is_border() && edge.y * bond.normal.x -
-                                                              edge.x * bond.normal.y >
-                                                          0.9 * length(edge)
-                              : across == Across::cell(bond.b);
+      const bool is_its =
+          bond.b == kWorld ? across.is_border() && edge.y * bond.normal.x - edge.x * bond.normal.y >
+                                                       0.9 * length(edge)
+                           : across == Across::cell(bond.b);
       if (is_its) visit(Edge(std::minmax(from, to)), length(edge));
     }
 }
@@ -122,8 +121,8 @@ CellBins::CellBins(const Pattern& pattern) {
       all.add(pattern.vertices[pattern.corners[k]]);
   const Vec2 size = all.high - all.low;
   low_ = all.low;
-  size_ = std::max({std::sqrt(size.x * size.y / pattern.cell_count()), 1e-4 * size.x,
-                    1e-4 * size.y});
+  size_ =
+      std::max({std::sqrt(size.x * size.y / pattern.cell_count()), 1e-4 * size.x, 1e-4 * size.y});
   columns_ = static_cast<std::uint32_t>(size.x / size_) + 1;
   rows_ = static_cast<std::uint32_t>(size.y / size_) + 1;
   begin_.assign(std::size_t{columns_} * rows_ + 1, 0);
@@ -188,9 +187,9 @@ WallState::WallState(const ImpactWall& wall)
   }
   size_low = extent.low, size_high = extent.high;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p = standing * Vec3{i & 1 ? extent.low.x : extent.high.x,
-                                   i & 2 ? extent.low.y : extent.high.y,
-                                   i & 4 ? half_thickness : -half_thickness};
+    const Vec3 p =
+        standing * Vec3{i & 1 ? extent.low.x : extent.high.x, i & 2 ? extent.low.y : extent.high.y,
+                        i & 4 ? half_thickness : -half_thickness};
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
@@ -343,8 +342,8 @@ std::vector<std::uint32_t> WallState::split(std::uint32_t chunk, Vec2 point, std
   return add_parts(chunk, parts);
 }
 
-std::vector<std::uint32_t> WallState::add_parts(
-    std::uint32_t chunk, std::span<const std::vector<std::uint32_t>> parts) {
+std::vector<std::uint32_t> WallState::add_parts(std::uint32_t chunk,
+                                                std::span<const std::vector<std::uint32_t>> parts) {
   std::vector<std::uint32_t> made;
   for (const std::vector<std::uint32_t>& part : parts) {
     ChunkState state;

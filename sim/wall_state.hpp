@@ -19,13 +19,13 @@ constexpr std::uint32_t kNoIsland = 0xFFFFFFFFu;
 
 /// A chunk during a run; its number never changes, whatever becomes of the wall's cells.
 struct ChunkState {
-  std::uint32_t cell = kNoCell;     ///< of the wall's pattern; kNoCell: a part, see `loop`
-  std::vector<std::uint32_t> loop;  ///< convex outline of a part: vertices, see WallState::place
-  MassProperties mass;              ///< at density 1, wall frame
-  std::uint32_t island = kNoIsland; ///< that it belongs to; kNoIsland: it was replaced
-  BodyId collider = kNoBody;        ///< while it stands and something is near
-  std::uint8_t depth = 0;           ///< how often it broke since it was a cell
-  bool has_hull = false;            ///< a collision shape was ever made of it
+  std::uint32_t cell = kNoCell;      ///< of the wall's pattern; kNoCell: a part, see `loop`
+  std::vector<std::uint32_t> loop;   ///< convex outline of a part: vertices, see WallState::place
+  MassProperties mass;               ///< at density 1, wall frame
+  std::uint32_t island = kNoIsland;  ///< that it belongs to; kNoIsland: it was replaced
+  BodyId collider = kNoBody;         ///< while it stands and something is near
+  std::uint8_t depth = 0;            ///< how often it broke since it was a cell
+  bool has_hull = false;             ///< a collision shape was ever made of it
 };
 
 /// Connected chunks: what stands of a wall, or a body in motion.
@@ -62,9 +62,9 @@ struct WallState {
 
   WallAsset asset;
   Material material;
-  Pose standing;          ///< the wall's frame at the start
+  Pose standing;  ///< the wall's frame at the start
   double half_thickness;
-  Vec3 low, high;         ///< bounds of the standing wall, world
+  Vec3 low, high;            ///< bounds of the standing wall, world
   Vec2 size_low, size_high;  ///< the same in its own plane
   CellBins bins;
   std::vector<ChunkState> chunks;
@@ -72,7 +72,7 @@ struct WallState {
   std::vector<Vec2> split_points;  ///< vertices that parts have and the pattern has not
   /// Edges of the pattern along which bonds broke: their vertices, the smaller first; ascending.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cracked_edges;
-  std::uint32_t hits = 0;          ///< that broke something
+  std::uint32_t hits = 0;  ///< that broke something
   bool touched = false;
 
   /// Position of a chunk's vertex: of the pattern, or (top bit set) of `split_points`.
