@@ -140,8 +140,8 @@ double ImpactRun::nearest_gap(const Shot& shot) const {
 }
 
 // The longest substep in which nothing could pass through something else: a projectile near
-// anything covers a share of its radius at most, debris near a wall of the wall's thickness. The
-// ground has no other side.
+// anything covers a share of its radius at most, debris near a wall of its own size: the solver
+// looks along its path. The ground has no other side.
 double ImpactRun::distance_limit(double dt) const {
   const double share =
       kStepShare * std::clamp(std::sqrt(scene_.simulation.max_error / 0.01), 0.1, 1.0);
@@ -150,8 +150,9 @@ double ImpactRun::distance_limit(double dt) const {
     if (!world_.is_awake(islands_[i].body)) continue;
     const double speed = length(world_.velocity(islands_[i].body));
     if (speed * limit <= share * least_thickness_) continue;
-    const NearWall near = nearest_wall(world_.bounds(islands_[i].body));
-    const double size = std::max(near.thickness, 2 * walls_[islands_[i].wall].half_thickness);
+    const RigidWorld::Bounds bounds = world_.bounds(islands_[i].body);
+    const NearWall near = nearest_wall(bounds);
+    const double size = std::max(near.thickness, length(bounds.high - bounds.low));
     limit = std::min(limit, std::max(share * size, 0.5 * near.gap) / speed);
   }
   for (const Shot& shot : shots_) {

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshing/trig.hpp"
+
 namespace sunder {
 namespace {
 
 constexpr double kMaxTurn = 0.1;     // rad per Runge–Kutta step
 constexpr double kSmallTurn = 1e-3;  // rad, below it the midpoint rule's error is rounding
 constexpr double kMaxSteps = 256;
+constexpr double kMaxDrift = 1e-3;  // of the energy in one call
 
 Quaternion plus(const Quaternion& q, double s, const Quaternion& d) {
   return {q.x + s * d.x, q.y + s * d.y, q.z + s * d.z, q.w + s * d.w};
@@ -33,6 +36,16 @@ Quaternion runge_kutta(const Quaternion& q, const SymMat3& i, Vec3 l, double h) 
   Quaternion sum = plus(k1, 2, k2);
   sum = plus(plus(sum, 2, k3), 1, k4);
   return normalised(plus(q, h / 6, sum));
+}
+
+/// Too fast to follow: the turn about L alone, which keeps L and the energy exactly.
+Quaternion precessed(const Quaternion& q, Vec3 spin, Vec3 l, double dt) {
+  const double size = length(l);
+  const Vec3 axis = (1 / size) * l;
+  constexpr double kTurn = 6.283185307179586;
+  const double turns = dot(spin, axis) * dt / kTurn;
+  const Vec2 half = unit_at_turns((turns - std::floor(turns)) / 2);
+  return normalised(Quaternion{half.y * axis.x, half.y * axis.y, half.y * axis.z, half.x} * q);
 }
 
 }  // namespace
@@ -82,16 +95,24 @@ SymMat3 rotated(const Axes& r, const SymMat3& m) {
 }
 
 Quaternion spun(Quaternion q, const SymMat3& inverse_inertia, Vec3 l, double dt) {
-  const double turn = length(spin_of(q, inverse_inertia, l)) * dt;
+  const Vec3 spin = spin_of(q, inverse_inertia, l);
+  const double energy = dot(spin, l) / 2;
+  if (!(energy > 0)) return q;
+  // A bound of the spin while energy lasts: needles turn far faster about their axis than across.
+  const double turn =
+      dt * std::sqrt(2 * energy * (inverse_inertia.xx + inverse_inertia.yy + inverse_inertia.zz));
   if (turn < kSmallTurn) {
     const Quaternion half = plus(q, dt / 2, rate(q, inverse_inertia, l));
     return normalised(plus(q, dt, rate(half, inverse_inertia, l)));
   }
-  const double steps = std::clamp(std::ceil(turn / kMaxTurn), 1.0, kMaxSteps);
+  const double steps = std::ceil(turn / kMaxTurn);
+  if (steps > kMaxSteps) return precessed(q, spin, l, dt);
+  Quaternion end = q;
   for (int i = 0; i < static_cast<int>(steps); ++i) {
-    q = runge_kutta(q, inverse_inertia, l, dt / steps);
+    end = runge_kutta(end, inverse_inertia, l, dt / steps);
   }
-  return q;
+  const double drift = dot(spin_of(end, inverse_inertia, l), l) / 2 - energy;
+  return std::fabs(drift) < kMaxDrift * energy ? end : precessed(q, spin, l, dt);
 }
 
 }  // namespace sunder

@@ -34,7 +34,7 @@ SymMat3 rotated(const Axes& r, const SymMat3& m);
 
 /// Attitude after `dt` of free rotation at constant angular momentum (world): fourth-order
 /// Runge–Kutta on q' = ½ ω q, ω = R I⁻¹ Rᵀ L, at most 0.1 rad per stage; second order is enough
-/// below 1e-3 rad.
+/// below 1e-3 rad. What spins too fast to follow turns about L alone, which keeps L and energy.
 Quaternion spun(Quaternion rotation, const SymMat3& inverse_inertia, Vec3 angular_momentum,
                 double dt);
 

@@ -303,8 +303,9 @@ void ImpactRun::go_through(Meeting m, const Answer& answer) {
   walls_[wall_index].hits += !broken.empty();
   const double crack_energy = material.fracture_energy * freed.driven_area;
   result_.energy.fracture += crack_energy;
-  recorder_.add_event(
-      {now_, wall_index, m.point, m.speed, answer.blow.utilisation, freed.bonds, freed.chunks});
+  if (freed.bonds > 0)
+    recorder_.add_event(
+        {now_, wall_index, m.point, m.speed, answer.blow.utilisation, freed.bonds, freed.chunks});
   const bool passed = hand_over(m, answer, freed, mass, footprint);
   if (!passed && m.solved) take_from_rebound(m, crack_energy - unspent_);
   const double spent = world_.kinetic_energy() - energy_before + crack_energy;

@@ -471,5 +471,24 @@ TEST(RigidWorld, StaysCalmOverTheGridOfStresses) {
   EXPECT_EQ(run({1.0 / 30, 0.05, 0, 1000, 500}), "");
 }
 
+// Angular momentum alone allows a needle energies that differ by its inertias' ratio, here 10⁴.
+TEST(RigidWorld, NeedleKeepsItsEnergyHoweverFastItSpins) {
+  for (const double spin : {10.0, 1e3, 1e5})
+    for (const double dt : {1.0 / 30, 1.0 / 240}) {
+      RigidWorld world({.gravity = 0, .has_ground = false});
+      BodyParams needle;
+      needle.mass = 1;
+      needle.inertia = {1e-6, 1e-2, 1e-2, 0, 0, 0};
+      needle.angular_velocity = {0.7 * spin, 0.6 * spin, 0.4 * spin};
+      const Prism box{{{-0.17, -0.002}, {0.17, -0.002}, {0.17, 0.002}, {-0.17, 0.002}}, 0.002};
+      world.add_body(needle, std::span(&box, 1));
+      const double before = world.kinetic_energy();
+      const Vec3 momentum = world.angular_momentum({});
+      for (int i = 0; i < 30; ++i) world.step(dt);
+      EXPECT_NEAR(world.kinetic_energy() / before, 1, 1e-3) << spin << ' ' << dt;
+      EXPECT_LT(length(world.angular_momentum({}) - momentum), 1e-9 * length(momentum));
+    }
+}
+
 }  // namespace
 }  // namespace sunder
