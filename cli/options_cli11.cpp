@@ -117,9 +117,11 @@ struct Given {
 
 void add_report_options(CLI::App& verb, Options& options) {
   verb.add_option("--report", options.report, "Write the numbers of the run to this JSON file");
-  verb.add_flag("--json", options.json, "Print the report to standard output, and nothing else");
-  verb.add_flag("-q,--quiet", options.quiet, "Print errors only");
-  verb.add_flag("-v,--verbose", options.verbose, "Print times and what was not used");
+  verb.add_flag("--json", options.json, "Print the report to standard output, and nothing else")
+      ->disable_flag_override();
+  verb.add_flag("-q,--quiet", options.quiet, "Print errors only")->disable_flag_override();
+  verb.add_flag("-v,--verbose", options.verbose, "Print times and what was not used")
+      ->disable_flag_override();
 }
 
 // What the verbs that run a scene have in common.
@@ -131,7 +133,8 @@ void add_scene_options(CLI::App& verb, Options& options, Given& given, const cha
   one_value_each(verb.add_option("--set", options.overrides,
                                  "Override a value, repeatable: walls.0.pattern.jitter=0.5"));
   verb.add_option("--threads", given.threads, "Threads; the result does not depend on them");
-  verb.add_flag("--allow-outside", options.allow_outside, "Let a scene's paths leave its folder");
+  verb.add_flag("--allow-outside", options.allow_outside, "Let a scene's paths leave its folder")
+      ->disable_flag_override();
   add_report_options(verb, options);
 }
 
@@ -164,7 +167,8 @@ CLI::App& add_impact(CLI::App& app, Options& options, Given& given) {
       *app.add_subcommand("impact", "Simulate what a scene's projectiles do to its walls");
   add_scene_options(verb, options, given, ".glb .gltf .svg .json");
   verb.add_flag("--no-skip", options.no_skip,
-                "Do the work that the scene does not need too; the result is the same");
+                "Do the work that the scene does not need too; the result is the same")
+      ->disable_flag_override();
   return verb;
 }
 

@@ -314,6 +314,7 @@ s.json -o a.glb -o ./a.glb|./a.glb is written twice
 s.json -o ./s.json|./s.json would overwrite the input
 s.json t.json -o a.glb|"t.json" belongs to no option
 s.json -o a.glb --wall=6x3x0.2|there is no option "--wall"
+s.json -o a.glb --no-skip=3|
 s.json -o a.glb --no-skipp|there is no option "--no-skipp", did you mean "--no-skip"?
 s.json -o a.glb --set projectiles.0.mass=0|--set: /projectiles/0/mass: 0 is outside
 s.json -o a.glb --seed -1|--seed -1: expected a whole number
