@@ -3,6 +3,7 @@
 # suffix files, and on a library header in a public header. Run: cmake -DROOT=. -P tests/layering.cmake
 set(layers meshing fracture sim io cli)
 set(heavy "CGAL:_cgal" "openvdb:_vdb" "Eigen:_eigen" "bullet:_bullet" "btBullet:_bullet"
+          "Bullet:_bullet" "LinearMath:_bullet"
           "assimp:_assimp" "nlohmann:_json" "CLI:_cli11" "voro..:_voropp" "immintrin.h:_avx2")
 set(faults "")
 set(rank 0)
