@@ -10,6 +10,7 @@
 #include "bench/impact_accuracy.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/spin.hpp"
+#include "tests/sim/bodies.hpp"
 
 namespace sunder {
 
@@ -36,33 +37,6 @@ namespace {
 
 constexpr double kGravity = 9.81;
 constexpr double kSteps[] = {1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 1000};
-
-BodyParams block_params(double mass, Vec3 half, Vec3 at, std::uint64_t order) {
-  BodyParams params;
-  params.mass = mass;
-  params.inertia = {.xx = mass / 3 * (half.y * half.y + half.z * half.z),
-                    .yy = mass / 3 * (half.x * half.x + half.z * half.z),
-                    .zz = mass / 3 * (half.x * half.x + half.y * half.y)};
-  params.pose.position = at;
-  params.order = order;
-  return params;
-}
-
-BodyId add_block(RigidWorld& world, const BodyParams& params, Vec3 half) {
-  const Prism prism{{{-half.x, -half.y}, {half.x, -half.y}, {half.x, half.y}, {-half.x, half.y}},
-                    half.z};
-  return world.add_body(params, {&prism, 1});
-}
-
-BodyParams ball_params(double mass, double radius, Vec3 at, std::uint64_t order) {
-  BodyParams params;
-  params.mass = mass;
-  const double inertia = 0.4 * mass * radius * radius;
-  params.inertia = {.xx = inertia, .yy = inertia, .zz = inertia};
-  params.pose.position = at;
-  params.order = order;
-  return params;
-}
 
 Quaternion about_z(double angle) {
   return {0, 0, std::sin(angle / 2), std::cos(angle / 2)};

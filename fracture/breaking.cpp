@@ -36,9 +36,7 @@ void for_each_corner(const Pattern& pattern, std::uint32_t cell, Visit visit) {
 }
 
 double distance_squared(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 edge = b - a;
-  const double t = std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
-  const Vec2 d = p - (a + t * edge);
+  const Vec2 d = from_segment(p, a, b);
   return dot(d, d);
 }
 
@@ -86,20 +84,23 @@ std::vector<std::uint8_t> shown_faces(const Pattern& pattern,
   return shown;
 }
 
+bool contains(const Pattern& pattern, std::uint32_t cell, Vec2 point) {
+  bool inside = false, on_edge = false;
+  for_each_corner(pattern, cell, [&](std::uint32_t k, std::uint32_t next) {
+    const Vec2 a = pattern.vertices[pattern.corners[k]];
+    const Vec2 b = pattern.vertices[pattern.corners[next]];
+    if (std::min(a.y, b.y) > point.y || std::max(a.y, b.y) < point.y) return;
+    const int turn = orientation(a, b, point);
+    on_edge |= turn == 0 && std::min(a.x, b.x) <= point.x && point.x <= std::max(a.x, b.x);
+    if ((a.y > point.y) != (b.y > point.y)) inside ^= (turn > 0) == (b.y > a.y);
+  });
+  return inside || on_edge;
+}
+
 std::uint32_t cell_at(const Pattern& pattern, Vec2 point) {
-  for (std::uint32_t cell = 0; cell < pattern.cell_count(); ++cell) {
-    bool inside = false, on_edge = false;
-    for_each_corner(pattern, cell, [&](std::uint32_t k, std::uint32_t next) {
-      const Vec2 a = pattern.vertices[pattern.corners[k]];
-      const Vec2 b = pattern.vertices[pattern.corners[next]];
-      if (std::min(a.y, b.y) > point.y || std::max(a.y, b.y) < point.y) return;
-      const int turn = orientation(a, b, point);
-      on_edge |= turn == 0 && std::min(a.x, b.x) <= point.x && point.x <= std::max(a.x, b.x);
-      if ((a.y > point.y) != (b.y > point.y)) inside ^= (turn > 0) == (b.y > a.y);
-    });
-    if (inside || on_edge) return cell;
-  }
-  return pattern.cell_count();
+  std::uint32_t cell = 0;
+  while (cell < pattern.cell_count() && !contains(pattern, cell, point)) ++cell;
+  return cell;
 }
 
 std::vector<std::uint32_t> cells_near(const Pattern& pattern, std::uint32_t start, Vec2 centre,

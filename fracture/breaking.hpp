@@ -45,6 +45,9 @@ class BreakableWall {
 /// BreakableWall is tested against. O(corners).
 std::vector<std::uint8_t> shown_faces(const Pattern& pattern, std::span<const std::uint8_t> intact);
 
+/// Whether the closed cell contains the point (metres, wall frame), decided exactly.
+bool contains(const Pattern& pattern, std::uint32_t cell, Vec2 point);
+
 /// The cell whose closed polygon contains the point (metres, wall frame), or cell_count() when
 /// none does; of several that share a border the first. O(cells).
 std::uint32_t cell_at(const Pattern& pattern, Vec2 point);

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "fracture/breaking.hpp"
 #include "fracture/crack_web.hpp"
 #include "fracture/gather.hpp"
 #include "fracture/local_web_detail.hpp"
@@ -51,24 +52,8 @@ void for_each_edge(const Pattern& pattern, std::uint32_t cell, Visit visit) {
   }
 }
 
-// Whether the closed cell contains the point, exactly.
-bool contains(const Pattern& pattern, std::uint32_t cell, Vec2 point) {
-  bool inside = false, on_edge = false;
-  for_each_edge(pattern, cell, [&](std::uint32_t k, std::uint32_t next) {
-    const Vec2 a = pattern.vertices[pattern.corners[k]];
-    const Vec2 b = pattern.vertices[pattern.corners[next]];
-    if (std::min(a.y, b.y) > point.y || std::max(a.y, b.y) < point.y) return;
-    const int turn = orientation(a, b, point);
-    on_edge |= turn == 0 && std::min(a.x, b.x) <= point.x && point.x <= std::max(a.x, b.x);
-    if ((a.y > point.y) != (b.y > point.y)) inside ^= (turn > 0) == (b.y > a.y);
-  });
-  return inside || on_edge;
-}
-
 double distance_to(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 edge = b - a;
-  const double t = std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
-  return length(p - (a + t * edge));
+  return length(from_segment(p, a, b));
 }
 
 double distance_between(Segment s, Segment t) {

@@ -15,13 +15,8 @@ constexpr int kDeepest = 8;
 // A crack that meets a fixed edge is led along it at most so far, in lengths of the crack's part.
 constexpr double kFarthestBend = 2;
 
-double at_nearest(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 edge = b - a;
-  return std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
-}
-
 double distance_to(Vec2 p, Vec2 a, Vec2 b) {
-  return length(p - (a + at_nearest(p, a, b) * (b - a)));
+  return length(from_segment(p, a, b));
 }
 
 bool is_border(CrackGraph::Kind kind) {
@@ -223,7 +218,7 @@ void CrackDrawing::link(const Stretch& stretch, const Event& a, const Event& b) 
 std::uint32_t CrackDrawing::split(std::uint32_t e, Vec2 place) {
   const CrackGraph::Edge edge = graph_.edges[e];
   const Vec2 a = graph_.vertices[edge.from], b = graph_.vertices[edge.to];
-  Vec2 at = rounded_to_float(a + at_nearest(place, a, b) * (b - a));
+  Vec2 at = rounded_to_float(a + nearest_share(place, a, b) * (b - a));
   if (edge.kind == Kind::border) (a.x == b.x ? at.x : at.y) = a.x == b.x ? a.x : a.y;
   if (length(at - a) < 0.5 * least_) return edge.from;
   if (length(at - b) < 0.5 * least_) return edge.to;

@@ -14,9 +14,7 @@ constexpr double kStray = 0.28;
 constexpr double kClearance = 0.45;
 
 double squared_distance(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 edge = b - a;
-  const double t = std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
-  const Vec2 d = p - (a + t * edge);
+  const Vec2 d = from_segment(p, a, b);
   return dot(d, d);
 }
 

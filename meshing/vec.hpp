@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace sunder {
@@ -34,6 +35,15 @@ constexpr double cross(Vec2 a, Vec2 b) {
 }
 inline double length(Vec2 a) {
   return std::sqrt(dot(a, a));
+}
+/// Where between a (0) and b (1) the segment is nearest to p; a != b.
+constexpr double nearest_share(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 edge = b - a;
+  return std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
+}
+/// From the segment's nearest point to p.
+constexpr Vec2 from_segment(Vec2 p, Vec2 a, Vec2 b) {
+  return p - (a + nearest_share(p, a, b) * (b - a));
 }
 
 constexpr Vec3 operator+(Vec3 a, Vec3 b) {

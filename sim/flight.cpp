@@ -11,10 +11,6 @@
 namespace sunder {
 namespace {
 
-/// Keys of the contact order: projectiles, then colliders, then bodies.
-constexpr std::uint64_t kShots = std::uint64_t{1} << 60;
-constexpr std::uint64_t kColliders = std::uint64_t{2} << 60;
-
 /// A body counts as fast when it covers more than this share of its own size in a substep, at a
 /// max_error of 0.01.
 constexpr double kStepShare = 0.5;
@@ -30,12 +26,6 @@ double time_to(double s, double u, double a) {
   return sum > 0 ? 2 * s / sum : std::numeric_limits<double>::infinity();
 }
 
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 edge = b - a;
-  const double t = std::clamp(dot(p - a, edge) / dot(edge, edge), 0.0, 1.0);
-  return length(p - (a + t * edge));
-}
-
 }  // namespace
 
 double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point) {
@@ -45,7 +35,7 @@ double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point) 
     for (std::uint32_t k = loop.begin; k < loop.end; ++k) {
       const Vec2 a = pattern.vertices[pattern.corners[k]];
       const Vec2 b = pattern.vertices[pattern.corners[loop.next(k)]];
-      least = std::min(least, distance_to_segment(point, a, b));
+      least = std::min(least, length(from_segment(point, a, b)));
       if ((a.y > point.y) != (b.y > point.y))
         inside ^= (cross(b - a, point - a) > 0) == (b.y > a.y);
     }
@@ -63,11 +53,9 @@ void ImpactRun::launch(std::uint32_t index) {
   body.pose.position = p.position;
   body.velocity = p.velocity;
   body.surface = {p.friction, p.restitution};
-  body.order = kShots + index;
+  body.order = kShotOrder + index;
   shot.body = world_.add_sphere(body, p.radius);
   own(shot.body, {Owner::Kind::projectile, index, 0});
-  masses_.resize(std::max<std::size_t>(masses_.size(), shot.body + 1));
-  masses_[shot.body] = p.mass;
   shot.track = recorder_.add_track(kNoTrack);
   recorder_.add_pose(shot.track, body.pose);
   result_.energy_in += 0.5 * p.mass * dot(p.velocity, p.velocity);
@@ -199,14 +187,7 @@ void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
     for (const std::uint32_t chunk : std::vector(islands_[w].chunks)) raise_collider(w, chunk);
     return;
   }
-  Vec3 from{1e300, 1e300, 1e300}, to{-1e300, -1e300, -1e300};
-  const Pose back = inverse(wall.standing);
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 p =
-        back * Vec3{i & 1 ? low.x : high.x, i & 2 ? low.y : high.y, i & 4 ? low.z : high.z};
-    from = {std::min(from.x, p.x), std::min(from.y, p.y), std::min(from.z, p.z)};
-    to = {std::max(to.x, p.x), std::max(to.y, p.y), std::max(to.z, p.z)};
-  }
+  const auto [from, to] = bounds_of(inverse(wall.standing), low, high);
   if (from.z > wall.half_thickness || to.z < -wall.half_thickness) return;
   for (const std::uint32_t cell : wall.bins.cells_in({from.x, from.y}, {to.x, to.y}))
     raise_collider(w, wall.chunk_of_cell[cell]);
@@ -215,7 +196,7 @@ void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
 void ImpactRun::raise_collider(std::uint32_t w, std::uint32_t chunk) {
   ChunkState& state = walls_[w].chunks[chunk];
   if (state.collider != kNoBody || state.island != w) return;
-  const std::uint64_t order = kColliders + (std::uint64_t{w} << 32) + chunk;
+  const std::uint64_t order = kColliderOrder + (std::uint64_t{w} << 32) + chunk;
   state.collider =
       world_.add_static(walls_[w].standing, walls_[w].prisms(chunk), walls_[w].surface(), order);
   own(state.collider, {Owner::Kind::collider, w, chunk});

@@ -267,7 +267,7 @@ ImpactResult ImpactRun::outcome() {
   r.reactions[0] = impulse_.x, r.reactions[1] = impulse_.y, r.reactions[2] = impulse_.z;
   std::vector<double> freed;
   for (const std::uint32_t i : live_) {
-    const double mass = masses_[islands_[i].body];
+    const double mass = walls_[islands_[i].wall].body_of(islands_[i].chunks).mass;
     r.freed_mass += mass;
     freed.push_back(mass);
     r.chunks_freed += islands_[i].chunks.size();

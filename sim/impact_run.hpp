@@ -18,6 +18,11 @@ struct SpeedProfile;
 /// Distance of a point from a cell, 0 inside, m.
 double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point);
 
+/// Keys of the contact order: projectiles, then colliders, then bodies, oldest first.
+constexpr std::uint64_t kShotOrder = std::uint64_t{1} << 60;
+constexpr std::uint64_t kColliderOrder = std::uint64_t{2} << 60;
+constexpr std::uint64_t kBodyOrder = std::uint64_t{3} << 60;
+
 /// One run of an impact test. The state of the world is in RigidWorld (poses, velocities), what
 /// hangs together in `islands_`; this class moves time on and lets things break.
 class ImpactRun {
@@ -76,7 +81,6 @@ class ImpactRun {
     std::vector<std::uint32_t> islands;
     std::uint32_t bonds = 0, chunks = 0;
     double driven_area = 0;  ///< of the cracks that the blow drove, m²
-    bool rest_is_gone = false;
   };
   /// Rigid motion of a wall's frame.
   struct Motion {
@@ -159,7 +163,7 @@ class ImpactRun {
   std::uint32_t detach(std::uint32_t from, std::span<const std::uint32_t> locals,
                        const Motion& motion);
   std::vector<Bond> intact_bonds(const Island& island, std::span<const std::uint32_t> locals) const;
-  bool keep_rest(std::uint32_t island, const Motion& motion);
+  void keep_rest(std::uint32_t island, const Motion& motion);
   std::uint32_t free_island(std::uint32_t wall, std::vector<std::uint32_t> members,
                             std::span<const Bond> bonds);
   void add_body_of(std::uint32_t island, const Motion& motion);
@@ -182,7 +186,6 @@ class ImpactRun {
   Vec3 impulse_;                ///< that ground and anchors gave, N s
   double unspent_ = 0;          ///< energy that contacts took in the last substep, J, less cracks'
   double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
-  std::vector<double> masses_;        ///< by BodyId, kg
   std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
 };
 

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Islands of a run: breaking bonds, and the bodies that what came loose moves as.
 #include <algorithm>
+#include <cassert>
 
 #include "sim/impact_run.hpp"
 
 namespace sunder {
-namespace {
-
-/// Key of the contact order: bodies come after projectiles and colliders, oldest first.
-constexpr std::uint64_t kBodies = std::uint64_t{3} << 60;
-
-}  // namespace
-
 // Breaks bonds of an island and makes bodies of what came loose; they go on as it moved.
 ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Crack> cracks,
                                         std::size_t driven) {
@@ -37,7 +31,7 @@ ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Cra
     freed.islands.push_back(detach(index, part.chunks, motion));
     freed.chunks += static_cast<std::uint32_t>(part.chunks.size());
   }
-  if (islands_[index].body != kNoBody) freed.rest_is_gone = !keep_rest(index, motion);
+  if (islands_[index].body != kNoBody) keep_rest(index, motion);
   return freed;
 }
 
@@ -110,18 +104,14 @@ std::vector<Bond> ImpactRun::intact_bonds(const Island& island,
   return bonds;
 }
 
-// The part of a moving island that the others left; false when nothing is left.
-bool ImpactRun::keep_rest(std::uint32_t index, const Motion& motion) {
+// The part of a moving island that the others left: its largest, so there is one.
+void ImpactRun::keep_rest(std::uint32_t index, const Motion& motion) {
   std::vector<std::uint32_t> locals, members;
   for (std::uint32_t local = 0; local < islands_[index].chunks.size(); ++local)
     if (islands_[index].graph->is_present(local)) locals.push_back(local);
+  assert(!locals.empty());
   world_.remove(islands_[index].body);
   own(islands_[index].body, {});
-  if (locals.empty()) {
-    std::erase(live_, index);
-    islands_[index].body = kNoBody;
-    return false;
-  }
   for (const std::uint32_t local : locals) members.push_back(islands_[index].chunks[local]);
   const std::vector<Bond> bonds = intact_bonds(islands_[index], locals);
   const std::uint32_t wall = islands_[index].wall, track = islands_[index].track;
@@ -129,7 +119,6 @@ bool ImpactRun::keep_rest(std::uint32_t index, const Motion& motion) {
   islands_[index].track = recorder_.add_track(track);
   std::erase(live_, index);
   add_body_of(index, motion);
-  return true;
 }
 
 std::uint32_t ImpactRun::free_island(std::uint32_t wall, std::vector<std::uint32_t> members,
@@ -156,7 +145,7 @@ void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
   const Vec3 centre = motion.pose * body.centroid;
   body.velocity = motion.velocity + cross(motion.angular_velocity, centre - motion.centre);
   body.angular_velocity = motion.angular_velocity;
-  body.order = kBodies + serial_++;
+  body.order = kBodyOrder + serial_++;
   std::vector<Prism> prisms;
   for (const std::uint32_t chunk : island.chunks) {
     for (Prism& prism : wall.prisms(chunk)) prisms.push_back(std::move(prism));
@@ -164,8 +153,6 @@ void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
   }
   island.body = world_.add_body(body, prisms);
   own(island.body, {Owner::Kind::island, index, 0});
-  masses_.resize(std::max<std::size_t>(masses_.size(), island.body + 1));
-  masses_[island.body] = body.mass;
   if (recorder_.parent(island.track) == kNoTrack)
     baseline_ += body.mass * scene_.simulation.gravity * centre.y;
   live_.push_back(index);

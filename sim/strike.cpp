@@ -344,7 +344,7 @@ bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& f
   const double now = m.solved ? -dot(world_.velocity_at(m.striker, m.point), m.normal) : m.speed;
   const Vec3 along = -1.0 * m.normal;
   const Island& rest = islands_[m.island];
-  if (rest.body != kNoBody && !freed.rest_is_gone) {
+  if (rest.body != kNoBody) {
     // A free-standing wall takes at most what makes it as fast as the hole's edge.
     const double rest_mass = 1 / world_.inverse_mass_at(rest.body, m.point, m.normal);
     speed = std::max(speed, mass * m.speed / (mass + plug + rest_mass));
@@ -383,11 +383,7 @@ void ImpactRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) c
   std::vector<std::uint8_t> listed(island.bonds.size(), 0);
   for (const Crack& crack : broken) listed[crack.bond] = 1;
   for (std::uint32_t b = 0; b < island.bonds.size(); ++b)
-    if (!listed[b] && island.graph->is_intact(b) && island.bonds[b].b != kWorld)
-      broken.push_back({b, 1});
-  for (std::uint32_t b = 0; b < island.bonds.size(); ++b)
-    if (!listed[b] && island.graph->is_intact(b) && island.bonds[b].b == kWorld)
-      broken.push_back({b, 1});
+    if (!listed[b] && island.graph->is_intact(b)) broken.push_back({b, 1});
 }
 
 // What the solver's contacts of the last step break: debris against walls, bodies against anything.

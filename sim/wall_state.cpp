@@ -114,6 +114,17 @@ bool is_sturdy(std::span<const Vec2> polygon, double least) {
 
 }  // namespace
 
+RigidWorld::Bounds bounds_of(const Pose& pose, Vec3 low, Vec3 high) {
+  RigidWorld::Bounds box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 p =
+        pose * Vec3{i & 1 ? low.x : high.x, i & 2 ? low.y : high.y, i & 4 ? low.z : high.z};
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
 CellBins::CellBins(const Pattern& pattern) {
   Extent all;
   for (std::uint32_t c = 0; c < pattern.cell_count(); ++c)
@@ -171,8 +182,6 @@ WallState::WallState(const ImpactWall& wall)
       material(wall.material),
       standing{wall.asset.wall.position, wall.asset.wall.rotation},
       half_thickness(wall.asset.wall.thickness / 2),
-      low{1e300, 1e300, 1e300},
-      high{-1e300, -1e300, -1e300},
       bins(wall.asset.pattern) {
   const std::uint32_t count = asset.pattern.cell_count();
   chunks.resize(count);
@@ -186,13 +195,9 @@ WallState::WallState(const ImpactWall& wall)
     extent.add(e.low), extent.add(e.high);
   }
   size_low = extent.low, size_high = extent.high;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 p =
-        standing * Vec3{i & 1 ? extent.low.x : extent.high.x, i & 2 ? extent.low.y : extent.high.y,
-                        i & 4 ? half_thickness : -half_thickness};
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  const RigidWorld::Bounds box = bounds_of(standing, {size_low.x, size_low.y, -half_thickness},
+                                           {size_high.x, size_high.y, half_thickness});
+  low = box.low, high = box.high;
 }
 
 Vec2 WallState::place(std::uint32_t vertex) const {

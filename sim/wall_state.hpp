@@ -38,6 +38,9 @@ struct Island {
   std::uint32_t track = kNoTrack;
 };
 
+/// Axis-aligned bounds of a box that is moved.
+RigidWorld::Bounds bounds_of(const Pose& pose, Vec3 low, Vec3 high);
+
 /// Finds the cells of a pattern near a point: bins over its bounding box.
 class CellBins {
  public:

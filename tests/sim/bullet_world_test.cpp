@@ -14,51 +14,13 @@
 #include "sim/rigid_world.hpp"
 #include "sim/spin.hpp"
 #include "sim/touch_points.hpp"
+#include "tests/sim/bodies.hpp"
 
 namespace sunder {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kGravity = 9.81;
-
-Prism block(double hx, double hy, double hz) {
-  return {{{-hx, -hy}, {hx, -hy}, {hx, hy}, {-hx, hy}}, hz};
-}
-
-BodyParams block_params(double mass, Vec3 half, Vec3 at, std::uint64_t order) {
-  BodyParams params;
-  params.mass = mass;
-  params.inertia = {.xx = mass / 3 * (half.y * half.y + half.z * half.z),
-                    .yy = mass / 3 * (half.x * half.x + half.z * half.z),
-                    .zz = mass / 3 * (half.x * half.x + half.y * half.y)};
-  params.pose.position = at;
-  params.order = order;
-  return params;
-}
-
-BodyId add_block(RigidWorld& world, const BodyParams& params, Vec3 half) {
-  const Prism prism = block(half.x, half.y, half.z);
-  return world.add_body(params, {&prism, 1});
-}
-
-BodyParams ball_params(double mass, double radius, Vec3 at, std::uint64_t order) {
-  BodyParams params;
-  params.mass = mass;
-  const double inertia = 0.4 * mass * radius * radius;
-  params.inertia = {.xx = inertia, .yy = inertia, .zz = inertia};
-  params.pose.position = at;
-  params.order = order;
-  return params;
-}
-
-Prism chunk(double radius, double half, std::uint64_t seed) {
-  Prism prism{{}, half};
-  for (int i = 0; i < 6; ++i) {
-    const double turn = (i + 0.5 * random_unit(seed, i)) * kPi / 3;
-    prism.outline.push_back({radius * std::cos(turn), radius * std::sin(turn)});
-  }
-  return prism;
-}
 
 double energy(const RigidWorld& world) {
   return world.kinetic_energy() + world.potential_energy();

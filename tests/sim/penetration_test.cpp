@@ -10,50 +10,17 @@
 
 #include "meshing/random.hpp"
 #include "sim/blow.hpp"
+#include "tests/sim/worked_shots.hpp"
 
 namespace sunder {
 namespace {
 
-/// Four shots computed independently of this code, as printed: mm, m/s. Densities of 2500 and
-/// 2440 kg/m³ and the strength in tension of the last two are what the printed digits imply.
-struct Worked {
-  const char* name;
-  ConcreteShot shot;
-  double thickness;
-  const char* printed[11];  // NDRC x e s, Hughes x e s, CEA-EDF e V, UKAEA x s V
-};
-const Worked kWorked[] = {
-    {"ball",
-     {4.11, 0.1, 40, 0.84, 1.26, 30e6, 2.9e6, 2400, 0.3},
-     0.1,
-     {"21.5", "65", "147", "30.0", "108", "150", "50", "101.5", "2.2", "122", "80.6"}},
-    {"flat",
-     {100, 0.3, 60, 0.72, 1, 35e6, 3.2e6, 2400, 0.3},
-     0.5,
-     {"87.7", "261", "564", "97.0", "349", "485", "181", "232", "12.6", "447", "203"}},
-    {"iris",
-     {47, 0.168, 135, 0.72, 1, 60e6, 4e6, 2500, 0.3},
-     0.25,
-     {"137", "358", "543", "125", "433", "604", "247", "136.6", "110", "494", "85.4"}},
-    {"hanchak",
-     {0.5, 0.0254, 434, 1.14, 1.39, 48e6, 4e6, 2440, 0.3},
-     0.178,
-     {"155", "226", "265", "203", "356", "411", "172", "454", "154", "231", "426"}},
-};
-
 TEST(Penetration, GivesTheWorkedExamplesToThePrintedDigits) {
   for (const Worked& row : kWorked) {
-    const Penetration n = ndrc(row.shot), h = hughes(row.shot), c = cea_edf(row.shot),
-                      u = ukaea(row.shot);
-    const BallisticBand band = ballistic_band(row.shot, row.thickness);
-    const double values[] = {n.depth * 1e3,       n.perforation * 1e3, n.scabbing * 1e3,
-                             h.depth * 1e3,       h.perforation * 1e3, h.scabbing * 1e3,
-                             c.perforation * 1e3, band.cea_edf,        u.depth * 1e3,
-                             u.scabbing * 1e3,    band.ukaea};
+    const std::array<double, 11> values = values_of(row);
     for (int i = 0; i < 11; ++i) {
-      const std::string printed = row.printed[i];
-      const double half_digit = printed.find('.') == std::string::npos ? 0.5 : 0.05;
-      EXPECT_NEAR(values[i], std::stod(printed), half_digit) << row.name << " column " << i;
+      EXPECT_NEAR(values[i], std::stod(row.printed[i]), half_digit(row.printed[i]))
+          << row.name << " column " << i;
     }
   }
 }
