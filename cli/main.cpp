@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   switch (options->verb) {
     case sunder::Verb::fracture: return sunder::run_fracture(*options);
     case sunder::Verb::impact: return sunder::run_impact(*options);
+    case sunder::Verb::collapse: return sunder::run_collapse(*options);
     case sunder::Verb::check: return sunder::run_check(*options);
     case sunder::Verb::schema: return sunder::run_schema(*options);
   }

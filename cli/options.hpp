@@ -9,7 +9,7 @@
 
 namespace sunder {
 
-enum class Verb { fracture, impact, check, schema };
+enum class Verb { fracture, impact, collapse, check, schema };
 
 /// The command line, as given.
 struct Options {
@@ -19,12 +19,14 @@ struct Options {
   std::string wall_scene;                      ///< scene text made from --wall …; empty: none
   std::vector<std::filesystem::path> outputs;  ///< -o
   std::filesystem::path report;                ///< --report; empty: none
+  std::filesystem::path history;               ///< --history; empty: none
+  std::optional<double> at;                    ///< --at, s
   std::vector<std::string> overrides;          ///< --set
   std::optional<std::uint64_t> seed;
   int threads = 0;  ///< 0: as many as the machine has
   bool json = false, quiet = false, allow_outside = false;
   bool verbose = false;
-  bool no_skip = false;  ///< impact: does all the work, to prove that the outcome is the same
+  bool no_skip = false;  ///< does all the work, to prove that the outcome is the same
 };
 
 /// Parses the command line. Throws Error{usage} with "did you mean"; prints help or version and

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -59,6 +61,15 @@ std::uint64_t parse_whole(const std::string& option, const std::string& text, st
   return std::stoull(text);
 }
 
+double parse_seconds(const std::string& option, const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc() || read.ptr != end || !(value >= 0 && std::isfinite(value)))
+    usage(option + " " + text + ": expected seconds from the start, 0 or more");
+  return value;
+}
+
 // `--seed ""` and `--seed=` are mistakes (an unset variable), not values. CLI11 would take the next
 // word for `--seed=`.
 void check_words(int argc, char** argv) {
@@ -112,7 +123,7 @@ void check_pattern_values(const WallOptions& wall) {
 // What CLI11 fills in that becomes an option only when all is read.
 struct Given {
   WallOptions wall;
-  std::string seed, threads;
+  std::string seed, threads, at;
 };
 
 void add_report_options(CLI::App& verb, Options& options) {
@@ -162,13 +173,28 @@ CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
   return verb;
 }
 
-CLI::App& add_impact(CLI::App& app, Options& options, Given& given) {
-  CLI::App& verb =
-      *app.add_subcommand("impact", "Simulate what a scene's projectiles do to its walls");
-  add_scene_options(verb, options, given, ".glb .gltf .svg .json");
+void add_run_options(CLI::App& verb, Options& options, Given& given, const char* suffixes) {
+  add_scene_options(verb, options, given, suffixes);
   verb.add_flag("--no-skip", options.no_skip,
                 "Do the work that the scene does not need too; the result is the same")
       ->disable_flag_override();
+}
+
+CLI::App& add_impact(CLI::App& app, Options& options, Given& given) {
+  CLI::App& verb =
+      *app.add_subcommand("impact", "Simulate what a scene's projectiles do to its walls");
+  add_run_options(verb, options, given, ".glb .gltf .svg .json");
+  return verb;
+}
+
+CLI::App& add_collapse(CLI::App& app, Options& options, Given& given) {
+  CLI::App& verb = *app.add_subcommand("collapse", "Bring a scene's frame building down");
+  add_run_options(verb, options, given, ".glb .gltf .svg .json, with --at .obj");
+  verb.add_option("--history", options.history,
+                  "Write the loads of every joint over time to this file: .csv .json");
+  verb.add_option("--at", given.at,
+                  "Write .glb, .gltf and .obj as everything stands at this time, without animation "
+                  "[s]");
   return verb;
 }
 
@@ -182,8 +208,8 @@ CLI::App& add_check(CLI::App& app, Options& options) {
 CLI::App& add_schema(CLI::App& app, Options& options) {
   CLI::App& verb = *app.add_subcommand("schema", "Print a JSON schema, for editors");
   verb.add_option("which", options.schema,
-                  "scene, material, report (of fracture and check) or impact-report; parameters: "
-                  "the parameter tables as Markdown");
+                  "scene, material, report (of fracture and check), impact-report or "
+                  "collapse-report; parameters: the parameter tables as Markdown");
   return verb;
 }
 
@@ -212,6 +238,16 @@ void finish_impact(const Options& options) {
   check_something_to_write(options, "impact");
 }
 
+void finish_collapse(const Options& options) {
+  if (options.inputs.empty()) usage("collapse needs a scene file");
+  if (options.history.empty()) check_something_to_write(options, "collapse");
+  const auto shows_a_moment = [](const std::filesystem::path& path) {
+    return path.extension() != ".json" && path.extension() != ".svg";
+  };
+  if (options.at && std::ranges::none_of(options.outputs, shows_a_moment))
+    usage("--at says which moment -o FILE.glb, .gltf or .obj shows, and there is none");
+}
+
 void finish_check(const Options& options) {
   if (options.inputs.size() < 2) return;
   if (options.json) usage("--json prints one report, so check takes one file with it");
@@ -222,6 +258,7 @@ void read_numbers(Options& options, const Given& given) {
   if (!given.seed.empty()) options.seed = parse_whole("--seed", given.seed, ~std::uint64_t{0});
   if (!given.threads.empty())
     options.threads = static_cast<int>(parse_whole("--threads", given.threads, 1024));
+  if (!given.at.empty()) options.at = parse_seconds("--at", given.at);
 }
 
 // False when help or the version was asked for and is printed.
@@ -249,14 +286,15 @@ std::optional<Options> parse_options(int argc, char** argv) {
   Options options;
   Given given;
   CLI::App app(
-      "Breaks walls into closed, textured chunks with bonds, as glTF or OBJ, and simulates what "
-      "hits them.",
+      "Breaks walls into closed, textured chunks with bonds, as glTF or OBJ, simulates what hits "
+      "them, and brings frame buildings down.",
       "sunder");
   app.set_version_flag("--version", "sunder " SUNDER_VERSION);
   app.require_subcommand(0, 1);
   const std::pair<CLI::App*, Verb> verbs[] = {
       {&add_fracture(app, options, given), Verb::fracture},
       {&add_impact(app, options, given), Verb::impact},
+      {&add_collapse(app, options, given), Verb::collapse},
       {&add_check(app, options), Verb::check},
       {&add_schema(app, options), Verb::schema},
   };
@@ -269,6 +307,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   switch (options.verb) {
     case Verb::fracture: finish_fracture(*verb, options, given.wall); break;
     case Verb::impact: finish_impact(options); break;
+    case Verb::collapse: finish_collapse(options); break;
     case Verb::check: finish_check(options); break;
     case Verb::schema: break;
   }

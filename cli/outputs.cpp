@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/outputs.hpp"
 
+#include <cstdio>
 #include <map>
 
 #include "cli/usage.hpp"
 #include "io/export.hpp"
+#include "io/export_recording.hpp"
+#include "io/joint_history.hpp"
+#include "io/output.hpp"
 
 namespace sunder {
 namespace {
@@ -25,14 +29,18 @@ fs::path canonical_of(fs::path path) {
   return fault ? path.lexically_normal() : result;
 }
 
-void check_suffix(const fs::path& path, Verb verb) {
+void check_suffix(const fs::path& path, const Options& options) {
   const std::string suffix = path.extension();
-  if (verb == Verb::impact) {
-    for (const char* own : {".glb", ".gltf", ".svg", ".json"})
-      if (suffix == own) return;
-    usage("-o " + path.string() + ": impact writes .glb .gltf .svg .json");
+  const bool is_collapse = options.verb == Verb::collapse;
+  if (suffix == ".json") return;
+  if (is_collapse || options.verb == Verb::impact) {
+    if (is_recording_suffix(suffix)) return;
+    if (is_collapse && options.at && is_recording_suffix(suffix, true)) return;
+    usage("-o " + path.string() + ": " +
+          (is_collapse ? "collapse writes .glb .gltf .svg .json, and .obj with --at"
+                       : "impact writes .glb .gltf .svg .json"));
   }
-  if (suffix != ".json" && !is_export_suffix(suffix))
+  if (!is_export_suffix(suffix))
     usage("-o " + path.string() +
           ": the suffix says the format, one of .glb .gltf .obj .stl .ply .svg .json");
 }
@@ -40,15 +48,18 @@ void check_suffix(const fs::path& path, Verb verb) {
 std::vector<fs::path> written_files(const Options& options) {
   std::vector<fs::path> files = options.outputs;
   if (!options.report.empty()) files.push_back(options.report);
+  if (!options.history.empty()) files.push_back(options.history);
   return files;
 }
 
 }  // namespace
 
 void check_outputs(const Options& options) {
-  for (const fs::path& path : options.outputs) check_suffix(path, options.verb);
+  for (const fs::path& path : options.outputs) check_suffix(path, options);
   if (!options.report.empty() && options.report.extension() != ".json")
     usage("--report " + options.report.string() + ": a report is a .json file");
+  if (!options.history.empty() && !is_history_suffix(options.history.extension()))
+    usage("--history " + options.history.string() + ": a history is a .csv or .json file");
   std::map<fs::path, fs::path> written;  // canonical → as given
   for (const fs::path& path : written_files(options)) {
     const auto [other, is_new] = written.emplace(canonical_of(path), path);
@@ -65,6 +76,13 @@ void check_not_written(const Options& options, std::span<const fs::path> inputs)
         usage(path.string() + " would overwrite the input");
     }
   }
+}
+
+void write_report(const Options& options, std::string_view text) {
+  if (options.json) std::fwrite(text.data(), 1, text.size(), stdout);
+  if (!options.report.empty()) write_file(options.report, text);
+  for (const fs::path& path : options.outputs)
+    if (path.extension() == ".json") write_file(path, text);
 }
 
 }  // namespace sunder

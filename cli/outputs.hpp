@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include "cli/options.hpp"
 
@@ -12,8 +13,11 @@ namespace sunder {
 /// writes, no file written twice, none of the inputs overwritten. Throws Error{usage}.
 void check_outputs(const Options& options);
 
-/// Throws Error{usage} when -o or --report would overwrite one of these files, by whatever name:
-/// what a scene reads is known only after reading it.
+/// Throws Error{usage} when -o, --report or --history would overwrite one of these files, by
+/// whatever name: what a scene reads is known only after reading it.
 void check_not_written(const Options& options, std::span<const std::filesystem::path> inputs);
+
+/// Writes a report to where the command line wants it: --json, --report and every -o FILE.json.
+void write_report(const Options& options, std::string_view text);
 
 }  // namespace sunder

@@ -18,6 +18,7 @@ enum ExitCode : int {
 /// One verb each; returns the exit code, throws Error.
 int run_fracture(const Options& options);
 int run_impact(const Options& options);
+int run_collapse(const Options& options);
 int run_check(const Options& options);
 int run_schema(const Options& options);
 

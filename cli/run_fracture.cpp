@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "cli/outputs.hpp"
 #include "cli/print_soundness.hpp"
 #include "cli/progress.hpp"
 #include "cli/read_scene.hpp"
@@ -10,7 +11,6 @@
 #include "cli/stopwatch.hpp"
 #include "fracture/measure.hpp"
 #include "io/export.hpp"
-#include "io/output.hpp"
 #include "io/report.hpp"
 #include "io/scene.hpp"
 #include "meshing/error.hpp"
@@ -91,7 +91,8 @@ void print_summary(const Asset& asset, const Scene& scene, const Options& option
                    static_cast<unsigned long long>(wall.stats.sites_repeated));
   for (const auto& path : options.outputs) std::fprintf(stderr, "wrote %s\n", path.c_str());
   if (!options.verbose) return;
-  for (const std::string& key : given_keys(scene, {"projectiles", "building", "simulation"}))
+  for (const std::string& key :
+       given_keys(scene, {"projectiles", "building", "scenario", "simulation"}))
     std::fprintf(stderr, "\"%s\" is not used by fracture\n", key.c_str());
   for (const auto& [step, seconds] : watch.steps())
     std::fprintf(stderr, "%-8s %8.3f ms\n", step.c_str(), 1e3 * seconds);
@@ -124,11 +125,7 @@ int run_fracture(const Options& options) {
     watch.lap("measure");
     report.times = watch.steps();
     report.skipped = skipped(asset, meshed);
-    const std::string text = report_json(report);
-    if (options.json) std::fputs(text.c_str(), stdout);
-    if (!options.report.empty()) write_file(options.report, text);
-    for (const auto& path : options.outputs)
-      if (wants_report(path)) write_file(path, text);
+    write_report(options, report_json(report));
     if (!report.soundness.is_sound()) {
       exit_code = kExitCheckFailed;
       print_soundness(stderr, "the asset", report.soundness);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "cli/outputs.hpp"
+#include "cli/print_run.hpp"
 #include "cli/progress.hpp"
 #include "cli/read_scene.hpp"
 #include "cli/run.hpp"
@@ -11,15 +12,10 @@
 #include "io/export_recording.hpp"
 #include "io/impact_report.hpp"
 #include "io/impact_scene.hpp"
-#include "io/output.hpp"
 #include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
-
-unsigned long long as_count(std::uint64_t value) {
-  return value;
-}
 
 void print_projectile(const ProjectileOutcome& p) {
   if (!p.hit) {
@@ -40,21 +36,9 @@ void print_summary(const ImpactResult& result, const Scene& scene, const Options
   std::fprintf(stderr, "%llu of %llu chunks freed, %llu bonds broken, %llu split again, %.4g kg\n",
                as_count(result.chunks_freed), as_count(result.chunks),
                as_count(result.broken_bonds), as_count(result.chunks_split), result.freed_mass);
-  const EnergyLedger& e = result.energy;
-  std::fprintf(stderr,
-               "energy in %.4g J: kinetic %.4g, potential %.4g, fracture %.4g, contact %.4g, "
-               "friction %.4g, numerical %.2g\n",
-               result.energy_in, e.kinetic, e.potential, e.fracture, e.contact, e.friction,
-               e.numerical);
-  std::fprintf(stderr, "%llu steps (%llu substeps), %.3g ms median, %.3g ms longest, seed %llu\n",
-               as_count(result.steps), as_count(result.substeps), result.step_ms_median,
-               result.step_ms_max, as_count(scene.seed));
-  for (const auto& path : options.outputs) std::fprintf(stderr, "wrote %s\n", path.c_str());
-  if (!options.verbose) return;
-  for (const std::string& key : given_keys(scene, {"building"}))
-    std::fprintf(stderr, "\"%s\" is not used by impact\n", key.c_str());
-  for (const auto& [step, seconds] : watch.steps())
-    std::fprintf(stderr, "%-8s %8.3f ms\n", step.c_str(), 1e3 * seconds);
+  print_ledger(result.energy_in, result.energy);
+  print_steps(result, scene.seed);
+  print_end(options, scene, "impact", {"building", "scenario"}, watch);
 }
 
 Scene read_impact_scene(const Options& options) {
@@ -98,10 +82,7 @@ int run_impact(const Options& options) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   const std::string text =
       impact_report_json({SUNDER_VERSION, scene.seed, result, took.count(), watch.steps()});
-  if (options.json) std::fputs(text.c_str(), stdout);
-  if (!options.report.empty()) write_file(options.report, text);
-  for (const auto& path : options.outputs)
-    if (path.extension() == ".json") write_file(path, text);
+  write_report(options, text);
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
   if (!options.quiet) print_summary(result, scene, options, watch);

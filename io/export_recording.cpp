@@ -2,6 +2,7 @@
 #include "io/export_recording.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "io/export_files.hpp"
 #include "io/gltf.hpp"
 #include "io/gltf_animation.hpp"
+#include "io/moment.hpp"
+#include "io/obj.hpp"
 #include "io/strip_svg.hpp"
 #include "meshing/error.hpp"
 
@@ -17,12 +20,25 @@ namespace sunder {
 namespace {
 
 constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg"};
+constexpr std::string_view kMomentSuffixes[] = {".glb", ".gltf", ".obj"};
 constexpr int kMostFrames = 60;
 
+[[noreturn]] void refuse_suffix(const std::string& suffix, bool of_moment) {
+  if (suffix == ".obj") {
+    throw Error(ErrorCode::usage, "an .obj holds one moment of a recording: say at which time");
+  }
+  if (of_moment) {
+    throw Error(
+        ErrorCode::usage,
+        "suffix \"" + suffix + "\" of one moment of a recording is not one of .glb .gltf .obj");
+  }
+  throw Error(ErrorCode::usage,
+              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg");
+}
+
 void check_params(const std::string& suffix, const RecordingParams& params) {
-  if (!is_recording_suffix(suffix)) {
-    throw Error(ErrorCode::usage,
-                "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg");
+  if (!is_recording_suffix(suffix, params.at.has_value())) {
+    refuse_suffix(suffix, params.at.has_value());
   }
   if (params.frames < 1 || params.frames > kMostFrames) {
     throw Error(ErrorCode::usage, "frames = " + std::to_string(params.frames) + " is outside [1, " +
@@ -30,33 +46,42 @@ void check_params(const std::string& suffix, const RecordingParams& params) {
   }
 }
 
-void write_animated(const Recording& recording, const std::filesystem::path& path,
-                    const std::string& suffix, int threads) {
+void write_solids(const Recording& recording, const std::filesystem::path& path,
+                  const std::string& suffix, const RecordingParams& params) {
+  std::optional<std::uint32_t> step;
+  if (params.at) step = step_nearest(recording, *params.at);
   std::vector<RenderMeshes> meshes;
   meshes.reserve(recording.walls.size());
   std::vector<WallView> walls;
   for (const RecordedWall& wall : recording.walls) {
-    meshes.push_back(render_meshes(wall.asset, threads));
+    meshes.push_back(render_meshes(wall.asset, params.threads));
     walls.push_back(view_of(wall.asset, meshes.back()));
   }
-  validate(walls);
+  if (!walls.empty() || recording.parts.empty()) validate(walls);
   OutputFile file(path);
   if (suffix == ".glb") {
     BackgroundSink sink(file);
-    write_glb(walls, sink, &recording);
+    write_glb(walls, sink, &recording, step);
     sink.finish();
     return file.commit();
   }
   OutputFile companion(companion_of(path));
   FileSink sink(file), companion_sink(companion);
-  write_gltf(walls, companion_of(path).filename().string(), sink, companion_sink, &recording);
+  const std::string name = companion_of(path).filename().string();
+  if (suffix == ".gltf") {
+    write_gltf(walls, name, sink, companion_sink, &recording, step);
+  } else {
+    write_obj(walls, {recording, *step}, name, sink);
+    write_mtl(walls, {recording, *step}, companion_sink);
+  }
   commit_pair(companion, file);
 }
 
 }  // namespace
 
-bool is_recording_suffix(const std::string& suffix) {
-  return std::ranges::find(kSuffixes, suffix) != std::end(kSuffixes);
+bool is_recording_suffix(const std::string& suffix, bool of_moment) {
+  const auto& suffixes = of_moment ? kMomentSuffixes : kSuffixes;
+  return std::ranges::find(suffixes, suffix) != std::end(suffixes);
 }
 
 void export_recording(const Recording& recording, const std::filesystem::path& path,
@@ -65,7 +90,7 @@ void export_recording(const Recording& recording, const std::filesystem::path& p
   check_params(suffix, params);
   try {
     validate(recording);
-    if (suffix != ".svg") return write_animated(recording, path, suffix, params.threads);
+    if (suffix != ".svg") return write_solids(recording, path, suffix, params);
     write_file(path, draw_strip(recording, {.frames = params.frames,
                                             .has_ground = params.has_ground,
                                             .ground_height = params.ground_height}));

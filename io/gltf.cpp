@@ -42,8 +42,9 @@ void refuse_above_4_gib(std::uint64_t size) {
 
 }  // namespace
 
-void write_glb(std::span<const WallView> walls, ByteSink& out, const Recording* recording) {
-  const GltfLayout layout = lay_out_gltf(walls, recording);
+void write_glb(std::span<const WallView> walls, ByteSink& out, const Recording* recording,
+               std::optional<std::uint32_t> step) {
+  const GltfLayout layout = lay_out_gltf(walls, recording, step);
   refuse_above_4_gib(layout.binary_size);
   // The length of the JSON is known when it has been written; the header is filled in at the end.
   const std::array<std::byte, 20> room{};
@@ -63,8 +64,8 @@ void write_glb(std::span<const WallView> walls, ByteSink& out, const Recording* 
 }
 
 void write_gltf(std::span<const WallView> walls, const std::string& binary_name, ByteSink& json,
-                ByteSink& binary, const Recording* recording) {
-  const GltfLayout layout = lay_out_gltf(walls, recording);
+                ByteSink& binary, const Recording* recording, std::optional<std::uint32_t> step) {
+  const GltfLayout layout = lay_out_gltf(walls, recording, step);
   write_gltf_document(walls, layout, percent_encoded(binary_name), json);
   write_gltf_binary(walls, layout, binary);
 }

@@ -34,15 +34,27 @@ struct GltfAnimation {
     bool appears = true;
   };
 
+  /// A part that is taken away: scale 1, then 0, or 0 for good when it was at the first step.
+  struct Departure {
+    std::uint32_t part = 0, keys = 0;
+  };
+
   std::vector<std::uint32_t> steps;  ///< of the recording, per key; ascending
   std::vector<Keys> key_ranges;      ///< distinct, in order of first use
   std::vector<History> histories;    ///< those of projectiles first
   std::vector<Arrival> arrivals;
+  std::vector<Departure> departures;
   std::vector<std::uint32_t> of_projectile;          ///< → histories or kNoHistory
   std::vector<std::vector<std::uint32_t>> of_chunk;  ///< per wall and chunk: the same
+  std::vector<std::uint32_t> of_part;                ///< → histories or kNoHistory
   std::uint64_t pose_count = 0;                      ///< keys of all histories
 
-  bool empty() const { return histories.empty() && arrivals.empty(); }
+  bool empty() const { return histories.empty() && arrivals.empty() && departures.empty(); }
+  /// Scales that samplers look into: 0, 1 and, when something departs, 0 again.
+  std::uint32_t scale_count() const {
+    if (!departures.empty()) return 3;
+    return arrivals.empty() ? 0 : 2;
+  }
   std::uint32_t key_count(const History& history) const { return key_ranges[history.keys].count; }
 };
 
@@ -58,7 +70,9 @@ Pose pose_of(const Recording& recording, const GltfAnimation& animation,
 
 /// Throws Error{output} that names what is at fault unless the recording can be written: tables
 /// agree, tracks exist and start within the recording, poses are finite with unit rotations, times
-/// ascend, projectiles' names are portable and unlike those of walls and of each other.
+/// ascend; names of projectiles and parts are portable and unlike those of walls, chunks and each
+/// other; parts have valid outlines and joints parts; every joint has a load at every sampling
+/// time.
 void validate(const Recording& recording);
 
 }  // namespace sunder

@@ -61,13 +61,13 @@ void write_bonds(std::span<const Bond> bonds, BinaryWriter& out) {
   for (const Bond& bond : bonds) out.put(bond.normal);
 }
 
-void write_list(const UniqueLists::List& list, BinaryWriter& out) {
-  if (list.largest > kLargestShortIndex) {
-    for (const std::uint32_t index : list.indices) out.put(index);
+void write_indices(std::span<const std::uint32_t> indices, bool is_short, BinaryWriter& out) {
+  if (!is_short) {
+    for (const std::uint32_t index : indices) out.put(index);
     return;
   }
-  for (const std::uint32_t index : list.indices) out.put(static_cast<std::uint16_t>(index));
-  if (list.indices.size() % 2 != 0) out.put(std::uint16_t{0});
+  for (const std::uint32_t index : indices) out.put(static_cast<std::uint16_t>(index));
+  if (indices.size() % 2 != 0) out.put(std::uint16_t{0});
 }
 
 void write_sphere_vertices(const std::vector<double>& radii, BinaryWriter& out) {
@@ -106,18 +106,49 @@ void write_rotations(const GltfLayout& layout, BinaryWriter& out) {
   });
 }
 
-void write_animation(const GltfLayout& layout, BinaryWriter& out) {
-  const GltfAnimation& animation = layout.animation;
-  if (animation.empty()) return;
-  for (const std::uint32_t step : animation.steps) {
-    out.put(static_cast<float>(layout.recording->times[step]));
+void write_glow_times(const GltfParts& parts, BinaryWriter& out) {
+  for (const GltfParts::Glow& glow : parts.glows) {
+    for (const std::uint32_t key : glow.keys) out.put(parts.grid[key]);
   }
+}
+
+void write_times(const GltfLayout& layout, BinaryWriter& out) {
+  for (std::uint64_t k = 0; k < layout.common_times(); ++k) {
+    out.put(static_cast<float>(layout.recording->times[layout.animation.steps[k]]));
+  }
+  write_glow_times(layout.parts, out);
+}
+
+void write_poses(const GltfLayout& layout, BinaryWriter& out) {
+  const GltfAnimation& animation = layout.animation;
   for_each_pose(layout, [&out](const Pose& pose, bool) { out.put(pose.position); });
-  if (!animation.arrivals.empty()) {
-    out.put(Vec3{0, 0, 0});
-    out.put(Vec3{1, 1, 1});
+  for (std::uint32_t i = 0; i < animation.scale_count(); ++i) {
+    out.put(i == 1 ? Vec3{1, 1, 1} : Vec3{0, 0, 0});
   }
   write_rotations(layout, out);
+}
+
+void write_weights(const GltfParts& parts, BinaryWriter& out) {
+  for (const GltfParts::Glow& glow : parts.glows) {
+    for (const auto& weights : glow.weights) {
+      for (const std::uint8_t weight : weights) {
+        out.put(static_cast<float>(weight) / static_cast<float>(kLightSteps));
+      }
+    }
+  }
+}
+
+void write_part_lists(const GltfParts& parts, BinaryWriter& out) {
+  for (const GltfParts::Shape& shape : parts.shapes) {
+    write_indices(shape.mesh.indices, shape.index_width() == 2, out);
+  }
+}
+
+void write_colours(const GltfLayout& layout, BinaryWriter& out) {
+  if (layout.parts.colour_count == 0) return;
+  for_each_colour(*layout.recording, layout.parts, [&out](const Colour& colour) {
+    out.put(Vec3{colour[0], colour[1], colour[2]});
+  });
 }
 
 }  // namespace
@@ -126,19 +157,32 @@ void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout
   const auto pass = [&sink](std::span<const float> values) {
     if (!values.empty()) sink.write(std::as_bytes(values));
   };
+  const GltfParts& parts = layout.parts;
   BinaryWriter out(sink);
   for (const WallView& wall : walls) pass(wall.positions);
   write_sphere_vertices(layout.radii, out);
   out.flush();
+  for (const GltfParts::Shape& shape : parts.shapes) pass(shape.mesh.positions);
+  for (std::uint32_t v = 0; v < parts.still_count; ++v) out.put(Vec3{});
+  out.flush();
   for (const WallView& wall : walls) pass(wall.normals);
   if (!layout.radii.empty()) write_sphere_vertices({1}, out);
+  out.flush();
+  for (const GltfParts::Shape& shape : parts.shapes) pass(shape.mesh.normals);
   for (const WallView& wall : walls) out.put_uvs(wall.uvs);
-  for (const UniqueLists::List& list : layout.lists.lists) write_list(list, out);
+  for (const GltfParts::Shape& shape : parts.shapes) out.put_uvs(shape.mesh.uvs);
+  write_colours(layout, out);
+  for (const UniqueLists::List& list : layout.lists.lists) {
+    write_indices(list.indices, list.largest <= kLargestShortIndex, out);
+  }
   if (!layout.radii.empty()) {
     for (const std::uint16_t index : sphere_mesh().indices) out.put(index);
   }
+  write_part_lists(parts, out);
   for (const WallView& wall : walls) write_bonds(wall.bonds, out);
-  write_animation(layout, out);
+  write_times(layout, out);
+  write_poses(layout, out);
+  write_weights(parts, out);
   out.flush();
 }
 

@@ -2,7 +2,9 @@
 #include "io/gltf_document.hpp"
 
 #include "io/gltf_motion.hpp"
+#include "io/gltf_part_text.hpp"
 #include "io/gltf_text.hpp"
+#include "io/moment.hpp"
 
 namespace sunder {
 namespace {
@@ -12,20 +14,24 @@ namespace {
 class Document {
  public:
   Document(std::span<const WallView> walls, const GltfLayout& layout, ByteSink& sink)
-      : walls_(walls), layout_(layout), out_(sink), motion_(layout, accessor_count(), out_) {}
+      : walls_(walls),
+        layout_(layout),
+        out_(sink),
+        motion_(layout, accessor_count(), out_),
+        parts_(layout, motion_.end_accessor(), layout.mesh_count + layout.radii.size(), out_) {}
 
   std::uint64_t write(const std::string& binary_name) {
     out_.text(R"({"asset":{"version":"2.0","generator":"sunder )" SUNDER_VERSION
               R"("},"scene":0,)");
     write_scene();
     write_nodes();
-    if (layout_.mesh_count > 0 || !layout_.radii.empty()) {
+    if (!layout_.materials.empty()) {
       write_meshes();
       write_materials();
     }
     write_accessors();
     write_views();
-    motion_.write_animation(walls_.size(), first_projectile());
+    motion_.write_animation(walls_.size(), first_projectile(), parts_);
     if (layout_.binary_size > 0) {
       out_.text(R"(,"buffers":[{"byteLength":)");
       out_.integer(layout_.binary_size);
@@ -49,17 +55,18 @@ class Document {
   }
 
   void write_scene();
+  void write_scene_extras(bool& first);
   void write_nodes();
   void write_wall_node(std::size_t w, std::uint64_t first_child);
   void write_wall_extras(std::size_t w);
-  void write_chunk_node(const WallView& wall, std::uint32_t chunk, std::string_view name,
+  void write_chunk_node(std::size_t w, std::uint32_t chunk, std::string_view name,
                         std::uint64_t mesh);
   void write_meshes();
   void write_primitive(std::uint64_t accessor, std::uint32_t list, std::uint32_t material);
   void write_materials();
+  void write_look(const Colour& colour, double metallic, double roughness);
   void write_accessors();
   void write_vertex_accessors(const WallView& wall, std::uint32_t chunk, std::uint64_t first);
-  void write_bounds(std::span<const float> positions);
   void write_list_accessors();
   void write_bond_accessors(std::size_t w);
   void write_views();
@@ -75,7 +82,7 @@ class Document {
     for (const WallView& wall : walls_) count += wall.bonds.empty() ? 0 : 4;
     return count;
   }
-  // Nodes: walls, their chunks, projectiles.
+  // Nodes: walls, their chunks, projectiles, parts.
   std::uint64_t first_projectile() const {
     std::uint64_t count = walls_.size();
     for (const WallView& wall : walls_) count += wall.chunk_count();
@@ -86,33 +93,47 @@ class Document {
   const GltfLayout& layout_;
   GltfText out_;
   GltfMotion motion_;
+  GltfPartText parts_;
   bool first_accessor_ = true;
 };
 
 void Document::write_scene() {
   out_.text(R"("scenes":[{)");
   bool first = true;
-  for (std::size_t w = 0; w < walls_.size(); ++w) {
+  const auto add_root = [&](std::uint64_t node) {
     if (first) out_.text(R"("nodes":[)");
     out_.separate(first);
-    out_.integer(w);
-  }
-  for (std::uint64_t p = 0; p < layout_.mesh_of.size(); ++p) {
-    out_.text(",");
-    out_.integer(first_projectile() + p);
+    out_.integer(node);
+  };
+  for (std::size_t w = 0; w < walls_.size(); ++w) add_root(w);
+  for (std::uint64_t i = 0; i < layout_.mesh_of.size() + layout_.parts.mesh_of.size(); ++i) {
+    add_root(first_projectile() + i);
   }
   if (!first) out_.text("]");
-  motion_.write_scene_extras();
+  write_scene_extras(first);
   out_.text("}]");
+}
+
+void Document::write_scene_extras(bool& first) {
+  if (!layout_.recording) return;
+  const Recording& recording = *layout_.recording;
+  out_.separate(first);
+  out_.key_integer(R"("extras":{"sunder":{"steps":)", recording.times.size());
+  out_.key(R"(,"duration":)", recording.times.back());
+  if (layout_.step) out_.key(R"(,"at":)", recording.times[*layout_.step]);
+  out_.key_integer(R"(,"breaks":)", recording.events.size());
+  parts_.write_scene_extras();
+  out_.text("}}");
 }
 
 // The walls come first, so that wall w is node w.
 void Document::write_nodes() {
-  if (walls_.empty()) return;
+  if (walls_.empty() && layout_.mesh_of.empty() && layout_.parts.mesh_of.empty()) return;
   out_.text(R"(,"nodes":[)");
+  bool first = true;
   std::uint64_t child = walls_.size();
   for (std::size_t w = 0; w < walls_.size(); ++w) {
-    if (w > 0) out_.text(",");
+    out_.separate(first);
     write_wall_node(w, child);
     child += walls_[w].chunk_count();
   }
@@ -120,10 +141,11 @@ void Document::write_nodes() {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     ChunkNames name(walls_[w].first_chunk);
     for (std::uint32_t c = 0; c < walls_[w].chunk_count(); ++c, ++name) {
-      write_chunk_node(walls_[w], c, *name, has_mesh(w, c) ? mesh++ : kUnused);
+      write_chunk_node(w, c, *name, has_mesh(w, c) ? mesh++ : kUnused);
     }
   }
-  motion_.write_nodes();
+  motion_.write_nodes(first);
+  parts_.write_nodes(first);
   out_.text("]");
 }
 
@@ -131,14 +153,7 @@ void Document::write_wall_node(std::size_t w, std::uint64_t first_child) {
   const WallView& wall = walls_[w];
   out_.text(R"({"name":)");
   out_.quoted(wall.name);
-  if (wall.position != Vec3{}) {
-    out_.text(R"(,"translation":)");
-    out_.numbers({wall.position.x, wall.position.y, wall.position.z});
-  }
-  if (wall.rotation != Quaternion{}) {
-    out_.text(R"(,"rotation":)");
-    out_.numbers({wall.rotation.x, wall.rotation.y, wall.rotation.z, wall.rotation.w});
-  }
+  out_.place({wall.position, wall.rotation});
   bool first = true;
   for (std::uint32_t c = 0; c < wall.chunk_count(); ++c) {
     if (first) out_.text(R"(,"children":[)");
@@ -173,19 +188,23 @@ void Document::write_wall_extras(std::size_t w) {
   out_.text("}}}");
 }
 
-void Document::write_chunk_node(const WallView& wall, std::uint32_t chunk, std::string_view name,
+void Document::write_chunk_node(std::size_t w, std::uint32_t chunk, std::string_view name,
                                 std::uint64_t mesh) {
+  const WallView& wall = walls_[w];
   const MassProperties& p = wall.chunks[chunk];
   const double density = wall.density;
   out_.text(R"(,{"name":")");
   out_.text(name);
+  out_.text("\"");
   if (mesh != kUnused) {
-    out_.text(R"(","mesh":)");
+    out_.text(R"(,"mesh":)");
     out_.integer(mesh);
-    out_.text(R"(,"extras":{"sunder":{"mass":)");
-  } else {
-    out_.text(R"(","extras":{"sunder":{"mass":)");
   }
+  if (layout_.step) {
+    const Recording& recording = *layout_.recording;
+    out_.place(pose_in_wall(recording, recording.walls[w], chunk, *layout_.step));
+  }
+  out_.text(R"(,"extras":{"sunder":{"mass":)");
   out_.number(density * p.volume);
   out_.text(R"(,"volume":)");
   out_.number(p.volume);
@@ -236,6 +255,7 @@ void Document::write_meshes() {
     }
   }
   motion_.write_meshes(first);
+  parts_.write_meshes(first);
   out_.text("]");
 }
 
@@ -256,21 +276,33 @@ void Document::write_primitive(std::uint64_t accessor, std::uint32_t list, std::
 void Document::write_materials() {
   out_.text(R"(,"materials":[)");
   bool first = true;
-  for (const auto& [name, inner] : layout_.materials) {
-    const MaterialLook look = look_of(name);
-    const auto& colour = inner ? look.inner : look.outer;
+  for (const auto& [name, use] : layout_.materials) {
     out_.separate(first);
     out_.text(R"({"name":)");
+    if (use == GltfUse::member) {
+      const MemberLook look = member_look(name);
+      out_.quoted(name);
+      write_look({1, 1, 1}, look.metallic, look.roughness);
+      continue;
+    }
+    const bool inner = use == GltfUse::inner;
+    const MaterialLook look = look_of(name);
+    const auto& colour = inner ? look.inner : look.outer;
     out_.quoted(name + (inner ? "_inner" : "_outer"));
-    out_.text(R"(,"pbrMetallicRoughness":{"baseColorFactor":)");
-    out_.numbers({linear(colour[0]), linear(colour[1]), linear(colour[2]), 1});
-    out_.text(R"(,"metallicFactor":)");
-    out_.number(look.metallic);
-    out_.text(R"(,"roughnessFactor":)");
-    out_.number(inner ? look.inner_roughness : look.outer_roughness);
-    out_.text("}}");
+    write_look({linear(colour[0]), linear(colour[1]), linear(colour[2])}, look.metallic,
+               inner ? look.inner_roughness : look.outer_roughness);
   }
   out_.text("]");
+}
+
+void Document::write_look(const Colour& colour, double metallic, double roughness) {
+  out_.text(R"(,"pbrMetallicRoughness":{"baseColorFactor":)");
+  out_.numbers({colour[0], colour[1], colour[2], 1});
+  out_.text(R"(,"metallicFactor":)");
+  out_.number(metallic);
+  out_.text(R"(,"roughnessFactor":)");
+  out_.number(roughness);
+  out_.text("}}");
 }
 
 void Document::write_accessors() {
@@ -286,6 +318,7 @@ void Document::write_accessors() {
     if (!walls_[w].bonds.empty()) write_bond_accessors(w);
   }
   motion_.write_accessors(first_accessor_);
+  parts_.write_accessors(first_accessor_);
   out_.text("]");
 }
 
@@ -314,7 +347,7 @@ void Document::write_vertex_accessors(const WallView& wall, std::uint32_t chunk,
   out_.text(R"(,"componentType":5126,"count":)");
   out_.integer(count);
   out_.text(R"(,"type":"VEC3",)");
-  write_bounds(wall.positions.subspan(3 * std::size_t{wall.vertex_begin[chunk]}, 3 * count));
+  out_.bounds(wall.positions.subspan(3 * std::size_t{wall.vertex_begin[chunk]}, 3 * count));
   out_.text(R"(},{"bufferView":1,"byteOffset":)");
   out_.integer(12 * vertex);
   out_.text(R"(,"componentType":5126,"count":)");
@@ -324,30 +357,6 @@ void Document::write_vertex_accessors(const WallView& wall, std::uint32_t chunk,
   out_.text(R"(,"componentType":5126,"count":)");
   out_.integer(count);
   out_.text(R"(,"type":"VEC2"})");
-}
-
-void Document::write_bounds(std::span<const float> positions) {
-  float low[3] = {positions[0], positions[1], positions[2]};
-  float high[3] = {positions[0], positions[1], positions[2]};
-  for (std::size_t i = 3; i < positions.size(); i += 3) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float value = positions[i + k];
-      low[k] = value < low[k] ? value : low[k];
-      high[k] = value > high[k] ? value : high[k];
-    }
-  }
-  const auto triple = [this](const float* values) {
-    out_.number(static_cast<double>(values[0]));
-    out_.text(",");
-    out_.number(static_cast<double>(values[1]));
-    out_.text(",");
-    out_.number(static_cast<double>(values[2]));
-  };
-  out_.text(R"("min":[)");
-  triple(low);
-  out_.text(R"(],"max":[)");
-  triple(high);
-  out_.text("]");
 }
 
 void Document::write_bond_accessors(std::size_t w) {
@@ -390,9 +399,10 @@ void Document::write_views() {
   write_view(GltfBlock::positions, R"(,"byteStride":12,"target":34962)", first);
   write_view(GltfBlock::normals, R"(,"byteStride":12,"target":34962)", first);
   write_view(GltfBlock::uvs, R"(,"byteStride":8,"target":34962)", first);
+  write_view(GltfBlock::colours, R"(,"byteStride":12,"target":34962)", first);
   write_view(GltfBlock::indices, R"(,"target":34963)", first);
-  for (const GltfBlock block :
-       {GltfBlock::bonds, GltfBlock::times, GltfBlock::translations, GltfBlock::rotations}) {
+  for (const GltfBlock block : {GltfBlock::bonds, GltfBlock::times, GltfBlock::translations,
+                                GltfBlock::rotations, GltfBlock::weights}) {
     write_view(block, "", first);
   }
   out_.text("]");

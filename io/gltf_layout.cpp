@@ -10,12 +10,11 @@ namespace {
 
 constexpr std::uint64_t kBondBytes = 8 + 4 + 12 + 12;
 
-std::uint32_t id_of(std::vector<std::pair<std::string, bool>>& materials, const std::string& name,
-                    bool inner) {
-  const auto found = std::ranges::find(materials, std::pair(name, inner));
-  if (found == materials.end()) materials.emplace_back(name, inner);
-  return static_cast<std::uint32_t>(std::ranges::find(materials, std::pair(name, inner)) -
-                                    materials.begin());
+std::uint32_t id_of(std::vector<GltfMaterial>& materials, const std::string& name, GltfUse use) {
+  const GltfMaterial material{name, use};
+  const auto id = std::ranges::find(materials, material) - materials.begin();
+  if (id == std::ssize(materials)) materials.push_back(material);
+  return static_cast<std::uint32_t>(id);
 }
 
 void lay_out_materials(std::span<const WallView> walls, GltfLayout& layout) {
@@ -26,8 +25,12 @@ void lay_out_materials(std::span<const WallView> walls, GltfLayout& layout) {
     for (std::uint32_t c = 0; c < wall.chunk_count(); ++c) {
       const bool outer = is_drawn(wall, lists, wall.outer[c]);
       const bool inner = is_drawn(wall, lists, wall.inner[c]);
-      if (outer && ids.outer == kUnused) ids.outer = id_of(layout.materials, wall.material, false);
-      if (inner && ids.inner == kUnused) ids.inner = id_of(layout.materials, wall.material, true);
+      if (outer && ids.outer == kUnused) {
+        ids.outer = id_of(layout.materials, wall.material, GltfUse::outer);
+      }
+      if (inner && ids.inner == kUnused) {
+        ids.inner = id_of(layout.materials, wall.material, GltfUse::inner);
+      }
       if (outer || inner) ++layout.mesh_count;
     }
     layout.materials_of.push_back(ids);
@@ -41,48 +44,79 @@ void lay_out_spheres(const Recording& recording, GltfLayout& layout) {
     layout.mesh_of.push_back(static_cast<std::uint32_t>(found - layout.radii.begin()));
     if (found == layout.radii.end()) layout.radii.push_back(radius);
   }
-  if (!layout.radii.empty()) layout.sphere_material = id_of(layout.materials, "steel", false);
+  if (!layout.radii.empty()) {
+    layout.sphere_material = id_of(layout.materials, "steel", GltfUse::outer);
+  }
+}
+
+void lay_out_parts(const Recording& recording, GltfLayout& layout) {
+  layout.parts = plan_parts(recording, layout.step);
+  for (GltfParts::Shape& shape : layout.parts.shapes) {
+    const RecordedPart& part = recording.parts[shape.part];
+    const GltfUse use = part.has_ends ? GltfUse::member : GltfUse::outer;
+    shape.material = id_of(layout.materials, part.material, use);
+  }
+}
+
+struct Sizes {
+  std::uint64_t vertices = 0, bonds = 0, indices = 0;  // of walls; the last two in bytes
+};
+
+Sizes lay_out_walls(std::span<const WallView> walls, GltfLayout& layout) {
+  Sizes sizes;
+  for (const WallView& wall : walls) {
+    layout.first_vertex.push_back(sizes.vertices);
+    layout.bonds_begin.push_back(sizes.bonds);
+    sizes.vertices += wall.vertex_begin.back();
+    sizes.bonds += wall.bonds.size() * kBondBytes;
+  }
+  for (const UniqueLists::List& list : layout.lists.lists) {
+    layout.list_begin.push_back(sizes.indices);
+    const std::uint64_t width = list.largest <= kLargestShortIndex ? 2 : 4;
+    sizes.indices += (list.indices.size() * width + 3) / 4 * 4;
+  }
+  return sizes;
+}
+
+// Where spheres and parts begin in the blocks, and how large the blocks are, bytes.
+std::array<std::uint64_t, kGltfBlocks> lay_out_blocks(const Sizes& walls, GltfLayout& layout) {
+  const std::uint64_t spheres = layout.radii.size();
+  const GltfParts& parts = layout.parts;
+  const GltfAnimation& animation = layout.animation;
+  layout.first_sphere_vertex = walls.vertices;
+  layout.sphere_list_begin = walls.indices;
+  layout.first_part_position = walls.vertices + spheres * kSphereVertices;
+  layout.first_part_normal = walls.vertices + (spheres > 0 ? kSphereVertices : 0);
+  layout.first_part_uv = walls.vertices;
+  layout.part_list_begin = walls.indices + (spheres > 0 ? 2 * kSphereIndices : 0);
+  return {12 * (layout.first_part_position + parts.vertex_count + parts.still_count),
+          12 * (layout.first_part_normal + parts.vertex_count),
+          8 * (layout.first_part_uv + parts.vertex_count),
+          12 * parts.colour_count,
+          layout.part_list_begin + parts.index_bytes,
+          walls.bonds,
+          4 * (layout.common_times() + parts.key_count),
+          12 * (animation.pose_count + animation.scale_count()),
+          16 * animation.pose_count,
+          4 * kLights * parts.key_count};
 }
 
 }  // namespace
 
-GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording) {
+GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording,
+                        std::optional<std::uint32_t> step) {
   GltfLayout layout;
   layout.recording = recording;
+  layout.step = step;
   layout.lists = unique_lists(walls);
   lay_out_materials(walls, layout);
-  std::uint64_t vertices = 0, bond_bytes = 0, index_bytes = 0;
-  for (const WallView& wall : walls) {
-    layout.first_vertex.push_back(vertices);
-    layout.bonds_begin.push_back(bond_bytes);
-    vertices += wall.vertex_begin.back();
-    bond_bytes += wall.bonds.size() * kBondBytes;
-  }
-  for (const UniqueLists::List& list : layout.lists.lists) {
-    layout.list_begin.push_back(index_bytes);
-    const std::uint64_t width = list.largest <= kLargestShortIndex ? 2 : 4;
-    index_bytes += (list.indices.size() * width + 3) / 4 * 4;
-  }
-  std::uint64_t keys = 0, poses = 0, scales = 0;
+  const Sizes of_walls = lay_out_walls(walls, layout);
   if (recording) {
     lay_out_spheres(*recording, layout);
-    layout.animation = plan_animation(*recording);
-    if (!layout.animation.empty()) keys = layout.animation.steps.size();
-    poses = layout.animation.pose_count;
-    scales = layout.animation.arrivals.empty() ? 0 : 2;
+    lay_out_parts(*recording, layout);
+    if (!step) layout.animation = plan_animation(*recording);
   }
-  layout.first_sphere_vertex = vertices;
-  layout.sphere_list_begin = index_bytes;
-  const std::uint64_t spheres = layout.radii.size();
-  const bool any = spheres > 0;
-  const std::uint64_t sizes[kGltfBlocks] = {12 * (vertices + spheres * kSphereVertices),
-                                            12 * (vertices + (any ? kSphereVertices : 0)),
-                                            8 * vertices,
-                                            index_bytes + (any ? 2 * kSphereIndices : 0),
-                                            bond_bytes,
-                                            4 * keys,
-                                            12 * (poses + scales),
-                                            16 * poses};
+  const std::array<std::uint64_t, kGltfBlocks> sizes = lay_out_blocks(of_walls, layout);
   std::uint32_t views = 0;
   for (std::size_t i = 0; i < kGltfBlocks; ++i) {
     layout.blocks[i] = {layout.binary_size, sizes[i], sizes[i] > 0 ? views++ : kUnused};

@@ -3,12 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "io/gltf_animation.hpp"
+#include "io/gltf_parts.hpp"
 #include "io/wall_view.hpp"
 
 namespace sunder {
@@ -18,12 +19,32 @@ constexpr std::uint32_t kLargestShortIndex = 65534;
 constexpr std::uint32_t kUnused = UINT32_MAX;
 
 /// The binary is a few large blocks, each one bufferView: what vertices and triangles of all walls
-/// and spheres consist of, the bonds, and the animation's keys.
-enum class GltfBlock { positions, normals, uvs, indices, bonds, times, translations, rotations };
-constexpr std::size_t kGltfBlocks = 8;
+/// spheres and parts consist of, the bonds, and the animation's keys.
+enum class GltfBlock {
+  positions,
+  normals,
+  uvs,
+  colours,
+  indices,
+  bonds,
+  times,
+  translations,
+  rotations,
+  weights
+};
+constexpr std::size_t kGltfBlocks = 10;
+
+/// What a material is for: the old or the broken faces of a wall, or members, whose own colour is
+/// in their vertices.
+enum class GltfUse { outer, inner, member };
+struct GltfMaterial {
+  std::string name;
+  GltfUse use = GltfUse::outer;
+  friend bool operator==(const GltfMaterial&, const GltfMaterial&) = default;
+};
 
 /// Everything about a glTF file that is known before its first byte is written. Bytes of the
-/// blocks follow each other in the order of GltfBlock; within each: walls, then spheres.
+/// blocks follow each other in the order of GltfBlock; within each: walls, spheres, parts.
 struct GltfLayout {
   struct Block {
     std::uint64_t begin = 0, size = 0;
@@ -34,28 +55,36 @@ struct GltfLayout {
   };
 
   UniqueLists lists;
-  std::vector<std::uint64_t> list_begin;                // bytes into the index block
-  std::vector<std::uint64_t> first_vertex;              // per wall
-  std::vector<std::uint64_t> bonds_begin;               // per wall, bytes into the bond block
-  std::vector<std::pair<std::string, bool>> materials;  // name, inner
-  std::vector<MaterialIds> materials_of;                // per wall
-  std::uint64_t mesh_count = 0;                         // of chunks
+  std::vector<std::uint64_t> list_begin;    // bytes into the index block
+  std::vector<std::uint64_t> first_vertex;  // per wall
+  std::vector<std::uint64_t> bonds_begin;   // per wall, bytes into the bond block
+  std::vector<GltfMaterial> materials;
+  std::vector<MaterialIds> materials_of;  // per wall
+  std::uint64_t mesh_count = 0;           // of chunks
   std::array<Block, kGltfBlocks> blocks;
   std::uint64_t binary_size = 0;
 
   // Of a recording.
   const Recording* recording = nullptr;
+  std::optional<std::uint32_t> step;  // the one moment that the file shows; without: animated
   GltfAnimation animation;
   std::vector<double> radii;           // distinct ones of spheres, a mesh each
   std::vector<std::uint32_t> mesh_of;  // per projectile: into radii
   std::uint32_t sphere_material = kUnused;
   std::uint64_t first_sphere_vertex = 0;
   std::uint64_t sphere_list_begin = 0;  // bytes into the index block
+  GltfParts parts;
+  std::uint64_t first_part_position = 0, first_part_normal = 0, first_part_uv = 0;  // vertices
+  std::uint64_t part_list_begin = 0;  // bytes into the index block
 
   const Block& operator[](GltfBlock block) const { return blocks[static_cast<std::size_t>(block)]; }
+  /// Times at the start of their block, which all bodies share; then those of lights.
+  std::uint64_t common_times() const { return animation.empty() ? 0 : animation.steps.size(); }
 };
 
-GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording);
+/// `step`, of the recording: the file shows that moment instead of the motion.
+GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording,
+                        std::optional<std::uint32_t> step);
 
 /// A wall's chunk has triangles of this list (see RenderMeshes::outer, inner).
 inline bool is_drawn(const WallView& wall, const std::vector<std::uint32_t>& lists,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/gltf_motion.hpp"
 
-#include <algorithm>
-#include <limits>
+#include <optional>
+
+#include "io/moment.hpp"
 
 namespace sunder {
 
@@ -16,24 +17,24 @@ std::uint64_t GltfMotion::first_scales() const {
   return first_poses() + 2 * layout_.animation.histories.size();
 }
 
-void GltfMotion::write_scene_extras() {
-  if (!layout_.recording) return;
-  const Recording& recording = *layout_.recording;
-  out_.key_integer(R"(,"extras":{"sunder":{"steps":)", recording.times.size());
-  out_.key(R"(,"duration":)", recording.times.back());
-  out_.key_integer(R"(,"breaks":)", recording.events.size());
-  out_.text("}}");
-}
-
-void GltfMotion::write_nodes() {
+void GltfMotion::write_nodes(bool& first) {
   for (std::size_t p = 0; p < layout_.mesh_of.size(); ++p) {
-    const Projectile& projectile = layout_.recording->projectiles[p].projectile;
-    out_.text(R"(,{"name":)");
+    const RecordedProjectile& recorded = layout_.recording->projectiles[p];
+    const Projectile& projectile = recorded.projectile;
+    const std::optional<std::uint32_t> step = layout_.step;
+    out_.separate(first);
+    out_.text(R"({"name":)");
     out_.quoted(projectile.name);
-    out_.key_integer(R"(,"mesh":)", layout_.mesh_count + layout_.mesh_of[p]);
-    const Vec3 at = projectile.position;
-    out_.text(R"(,"translation":)");
-    out_.numbers({at.x, at.y, at.z});
+    if (!step || is_there(*layout_.recording, recorded, *step)) {
+      out_.key_integer(R"(,"mesh":)", layout_.mesh_count + layout_.mesh_of[p]);
+    }
+    if (step) {
+      out_.place(pose_of(*layout_.recording, recorded, *step));
+    } else {
+      const Vec3 at = projectile.position;
+      out_.text(R"(,"translation":)");
+      out_.numbers({at.x, at.y, at.z});
+    }
     out_.text(R"(,"extras":{"sunder":{"mass":)");
     out_.number(projectile.mass);
     out_.text(R"(,"radius":)");
@@ -53,15 +54,6 @@ void GltfMotion::write_meshes(bool& first) {
     out_.key_integer(R"(,"material":)", layout_.sphere_material);
     out_.text("}]}");
   }
-}
-
-void GltfMotion::write_accessor(GltfBlock block, std::uint64_t offset, std::uint64_t count,
-                                std::string_view rest, bool& first) {
-  out_.separate(first);
-  out_.key_integer(R"({"bufferView":)", layout_[block].view);
-  out_.key_integer(R"(,"byteOffset":)", offset);
-  out_.key_integer(R"(,"count":)", count);
-  out_.text(rest);
 }
 
 void GltfMotion::write_sphere_accessors(bool& first) {
@@ -108,10 +100,17 @@ void GltfMotion::write_accessors(bool& first) {
                    R"(,"componentType":5126,"type":"VEC4"})", first);
   }
   for (const GltfAnimation::Arrival& arrival : animation.arrivals) {
-    write_accessor(GltfBlock::translations, 12 * animation.pose_count,
-                   animation.key_ranges[arrival.keys].count,
-                   R"(,"componentType":5126,"type":"VEC3"})", first);
+    write_scales(0, arrival.keys, first);
   }
+  for (const GltfAnimation::Departure& departure : animation.departures) {
+    write_scales(animation.key_ranges[departure.keys].count == 2 ? 1 : 0, departure.keys, first);
+  }
+}
+
+void GltfMotion::write_scales(std::uint64_t offset, std::uint32_t keys, bool& first) {
+  write_accessor(GltfBlock::translations, 12 * (layout_.animation.pose_count + offset),
+                 layout_.animation.key_ranges[keys].count,
+                 R"(,"componentType":5126,"type":"VEC3"})", first);
 }
 
 void GltfMotion::write_sampler(std::uint64_t input, std::uint64_t output, bool is_step,
@@ -122,17 +121,20 @@ void GltfMotion::write_sampler(std::uint64_t input, std::uint64_t output, bool i
   out_.text(is_step ? R"(,"interpolation":"STEP"})" : "}");
 }
 
-// Two samplers per history, then one per arrival.
-void GltfMotion::write_samplers() {
+// Two samplers per history, then one per arrival and departure.
+void GltfMotion::write_samplers(bool& first) {
   const GltfAnimation& animation = layout_.animation;
-  bool first = true;
   for (std::size_t h = 0; h < animation.histories.size(); ++h) {
     const std::uint64_t input = first_times() + animation.histories[h].keys;
     write_sampler(input, first_poses() + 2 * h, false, first);
     write_sampler(input, first_poses() + 2 * h + 1, false, first);
   }
-  for (std::size_t a = 0; a < animation.arrivals.size(); ++a) {
-    write_sampler(first_times() + animation.arrivals[a].keys, first_scales() + a, true, first);
+  std::uint64_t scale = first_scales();
+  for (const GltfAnimation::Arrival& arrival : animation.arrivals) {
+    write_sampler(first_times() + arrival.keys, scale++, true, first);
+  }
+  for (const GltfAnimation::Departure& departure : animation.departures) {
+    write_sampler(first_times() + departure.keys, scale++, true, first);
   }
 }
 
@@ -144,31 +146,52 @@ void GltfMotion::write_channel(std::uint64_t sampler, std::uint64_t node, std::s
   out_.text(path);
 }
 
-void GltfMotion::write_animation(std::uint64_t first_chunk, std::uint64_t first_projectile) {
+void GltfMotion::write_moves(std::uint64_t node, std::uint32_t history, bool& first) {
+  if (history == kNoHistory) return;
+  const std::uint64_t sampler = 2 * std::uint64_t{history};
+  write_channel(sampler, node, R"(,"path":"translation"}})", first);
+  write_channel(sampler + 1, node, R"(,"path":"rotation"}})", first);
+}
+
+void GltfMotion::write_scale_channels(std::uint64_t first_projectile, bool& first) {
   const GltfAnimation& animation = layout_.animation;
-  if (animation.empty()) return;
-  out_.text(R"(,"animations":[{"name":"impact","channels":[)");
+  const std::uint64_t first_part = first_projectile + layout_.mesh_of.size();
+  std::uint64_t sampler = 2 * animation.histories.size();
+  for (const GltfAnimation::Arrival& arrival : animation.arrivals) {
+    write_channel(sampler++, first_projectile + arrival.projectile, R"(,"path":"scale"}})", first);
+  }
+  for (const GltfAnimation::Departure& departure : animation.departures) {
+    write_channel(sampler++, first_part + departure.part, R"(,"path":"scale"}})", first);
+  }
+}
+
+void GltfMotion::write_animation(std::uint64_t first_chunk, std::uint64_t first_projectile,
+                                 GltfPartText& parts) {
+  const GltfAnimation& animation = layout_.animation;
+  if (animation.empty() && layout_.parts.glows.empty()) return;
+  out_.text(R"(,"animations":[{"name":)");
+  out_.text(layout_.recording->parts.empty() ? R"("impact")" : R"("collapse")");
+  out_.text(R"(,"channels":[)");
   bool first = true;
-  const auto move = [&](std::uint64_t node, std::uint32_t history) {
-    if (history == kNoHistory) return;
-    const std::uint64_t sampler = 2 * std::uint64_t{history};
-    write_channel(sampler, node, R"(,"path":"translation"}})", first);
-    write_channel(sampler + 1, node, R"(,"path":"rotation"}})", first);
-  };
   for (std::size_t p = 0; p < animation.of_projectile.size(); ++p) {
-    move(first_projectile + p, animation.of_projectile[p]);
+    write_moves(first_projectile + p, animation.of_projectile[p], first);
   }
-  for (std::size_t a = 0; a < animation.arrivals.size(); ++a) {
-    write_channel(2 * animation.histories.size() + a,
-                  first_projectile + animation.arrivals[a].projectile, R"(,"path":"scale"}})",
-                  first);
-  }
+  write_scale_channels(first_projectile, first);
   std::uint64_t node = first_chunk;
   for (const std::vector<std::uint32_t>& wall : animation.of_chunk) {
-    for (const std::uint32_t history : wall) move(node++, history);
+    for (const std::uint32_t history : wall) write_moves(node++, history, first);
   }
+  const std::uint64_t first_part = first_projectile + layout_.mesh_of.size();
+  for (std::size_t p = 0; p < animation.of_part.size(); ++p) {
+    write_moves(first_part + p, animation.of_part[p], first);
+  }
+  const std::uint64_t samplers =
+      2 * animation.histories.size() + animation.arrivals.size() + animation.departures.size();
+  parts.write_channels(first_part, samplers, first);
   out_.text(R"(],"samplers":[)");
-  write_samplers();
+  first = true;
+  write_samplers(first);
+  parts.write_samplers(first);
   out_.text("]}]");
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <string_view>
 
 #include "io/text_writer.hpp"
+#include "sim/pose.hpp"
 
 namespace sunder {
 
@@ -33,6 +36,29 @@ class GltfText : public TextWriter {
       number(value);
     }
     text("]");
+  }
+  /// A node's `,"translation":…,"rotation":…`, where they are not trivial.
+  void place(const Pose& pose) {
+    const auto& [at, turn] = pose;
+    if (at != Vec3{}) {
+      text(R"(,"translation":)");
+      numbers({at.x, at.y, at.z});
+    }
+    if (turn != Quaternion{}) {
+      text(R"(,"rotation":)");
+      numbers({turn.x, turn.y, turn.z, turn.w});
+    }
+  }
+  /// `"min":[…],"max":[…]` of positions, three numbers each.
+  void bounds(std::span<const float> positions);
+  /// An item of "accessors" up to its count; `rest` closes it, or leaves that to the caller.
+  void accessor(std::uint32_t view, std::uint64_t offset, std::uint64_t count,
+                std::string_view rest, bool& first) {
+    separate(first);
+    key_integer(R"({"bufferView":)", view);
+    key_integer(R"(,"byteOffset":)", offset);
+    key_integer(R"(,"count":)", count);
+    text(rest);
   }
 };
 

@@ -3,9 +3,8 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
-#include <vector>
 
+#include "io/run_report.hpp"
 #include "sim/impact.hpp"
 
 namespace sunder {
@@ -15,8 +14,8 @@ struct ImpactReport {
   std::string version;
   std::uint64_t seed = 0;
   const ImpactResult& result;
-  double wall_s = 0;                                  ///< time of the whole run, s
-  std::vector<std::pair<std::string, double>> times;  ///< "simulate" → seconds
+  double wall_s = 0;  ///< time of the whole run, s
+  RunTimes times;
 };
 
 /// JSON text; numbers read back as the same doubles, one that is not finite is null.

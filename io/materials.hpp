@@ -9,6 +9,8 @@
 
 namespace sunder {
 
+/// True for 1 to 40 letters, digits, _ and -.
+bool is_name(std::string_view text);
 /// Text of a key `name`: letters, digits, _ and - only, 1 to 40 of them. Throws as Place::fail.
 std::string name_at(const Place& place);
 

@@ -33,12 +33,16 @@ std::vector<Material> parse_builtin_materials() {
 
 }  // namespace
 
-std::string name_at(const Place& place) {
+bool is_name(std::string_view text) {
   constexpr std::string_view kLetters =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return !text.empty() && text.size() <= kMaxNameLength &&
+         text.find_first_not_of(kLetters) == std::string_view::npos;
+}
+
+std::string name_at(const Place& place) {
   std::string name = text_at(place);
-  if (name.empty() || name.size() > kMaxNameLength ||
-      name.find_first_not_of(kLetters) != std::string::npos) {
+  if (!is_name(name)) {
     place.fail("a name is 1 to " + std::to_string(kMaxNameLength) +
                " letters A-Z a-z, digits, _ and -, got " + describe(place.value));
   }

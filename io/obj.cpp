@@ -6,8 +6,13 @@
 #include <cstdint>
 #include <cstring>
 #include <set>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "io/gltf_layout.hpp"
+#include "io/moment.hpp"
+#include "io/part_colour.hpp"
 #include "meshing/error.hpp"
 #include "meshing/random.hpp"
 
@@ -66,53 +71,101 @@ class Distinct {
   std::vector<std::uint32_t> table_, ids_, first_;
 };
 
+// What becomes an object: the arrays are per vertex, uvs and colours may be empty.
+struct Solid {
+  std::string_view name;
+  Pose pose;
+  std::span<const float> positions, normals, uvs;
+  std::span<const Colour> colours;
+};
+
 class ObjWriter {
  public:
-  explicit ObjWriter(ByteSink& sink) : out_(sink) {}
-
-  void write(std::span<const WallView> walls, const std::string& material_file) {
+  ObjWriter(ByteSink& sink, const std::string& material_file) : out_(sink) {
     out_.text("# sunder " SUNDER_VERSION "\nmtllib ");
     out_.text(material_file);
     out_.text("\n");
-    for (const WallView& wall : walls) {
-      ChunkNames name(wall.first_chunk);
-      const std::string material = obj_name(wall.material);
-      for (std::uint32_t chunk = 0; chunk < wall.chunk_count(); ++chunk, ++name) {
-        out_.text("o ");
-        out_.text(*name);
-        out_.text("\n");
-        write_vertices(wall, chunk);
-        write_faces(wall, wall.outer[chunk], material, "_outer\n");
-        write_faces(wall, wall.inner[chunk], material, "_inner\n");
-        position_base_ += positions_.count();
-        uv_base_ += uvs_.count();
-        normal_base_ += normals_.count();
-      }
-    }
-    out_.flush();
   }
 
- private:
-  void write_vertices(const WallView& wall, std::uint32_t chunk) {
-    const std::size_t begin = wall.vertex_begin[chunk], count = wall.vertex_count(chunk);
-    const auto positions = wall.positions.subspan(3 * begin, 3 * count);
-    const auto uvs = wall.uvs.subspan(2 * begin, 2 * count);
-    const auto normals = wall.normals.subspan(3 * begin, 3 * count);
-    const bool placed = wall.position == Vec3{} && wall.rotation == Quaternion{};
-    for (const std::uint32_t v : positions_.gather(positions)) {
-      const Vec3 p = vector_at(positions, v);
-      line("v ", placed ? p : rotate(wall.rotation, p) + wall.position);
+  // `pose_of_chunk(c)`: of its wall's frame as the chunk carries it.
+  template <class PoseOfChunk>
+  void write_wall(const WallView& wall, const PoseOfChunk& pose_of_chunk) {
+    ChunkNames name(wall.first_chunk);
+    const std::string material = obj_name(wall.material);
+    for (std::uint32_t chunk = 0; chunk < wall.chunk_count(); ++chunk, ++name) {
+      const std::size_t begin = wall.vertex_begin[chunk], count = wall.vertex_count(chunk);
+      start({*name,
+             pose_of_chunk(chunk),
+             wall.positions.subspan(3 * begin, 3 * count),
+             wall.normals.subspan(3 * begin, 3 * count),
+             wall.uvs.subspan(2 * begin, 2 * count),
+             {}});
+      for (const auto& [list, side] :
+           {std::pair(wall.outer[chunk], "_outer"), std::pair(wall.inner[chunk], "_inner")}) {
+        if (list == RenderMeshes::kNoList) continue;
+        const IndexList range = wall.lists[list];
+        write_faces(wall.indices.subspan(range.begin, range.count), material, side);
+      }
     }
-    for (const std::uint32_t v : uvs_.gather(uvs)) {
-      out_.text("vt ");
-      out_.number(static_cast<double>(uvs[2 * v]));
-      out_.text(" ");
-      out_.number(static_cast<double>(uvs[2 * v + 1]));
+  }
+  // Begins an object; its faces follow.
+  void start(const Solid& solid) {
+    position_base_ += positions_.count();
+    uv_base_ += uvs_.count();
+    normal_base_ += normals_.count();
+    has_uvs_ = !solid.uvs.empty();
+    out_.text("o ");
+    out_.text(solid.name);
+    out_.text("\n");
+    write_vertices(solid);
+  }
+  void write_faces(std::span<const std::uint32_t> indices, std::string_view material,
+                   std::string_view side) {
+    if (indices.empty()) return;
+    out_.text("usemtl ");
+    out_.text(material);
+    out_.text(side);
+    out_.text("\n");
+    for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
+      out_.text("f");
+      for (const std::uint32_t vertex : indices.subspan(i, 3)) {
+        out_.text(" ");
+        out_.integer(position_base_ + positions_[vertex]);
+        out_.text("/");
+        if (has_uvs_) out_.integer(uv_base_ + uvs_[vertex]);
+        out_.text("/");
+        out_.integer(normal_base_ + normals_[vertex]);
+      }
       out_.text("\n");
     }
-    for (const std::uint32_t v : normals_.gather(normals)) {
-      const Vec3 n = vector_at(normals, v);
-      line("vn ", placed ? n : rotate(wall.rotation, n));
+  }
+  // From here on solids without colours are white, which leaves their materials as they are.
+  void colour_all() { colours_all_ = true; }
+  void finish() { out_.flush(); }
+
+ private:
+  void write_vertices(const Solid& solid) {
+    const bool placed = solid.pose == Pose{};
+    for (const std::uint32_t v : positions_.gather(solid.positions)) {
+      const Vec3 p = vector_at(solid.positions, v);
+      line("v ", placed ? p : solid.pose * p);
+      if (!solid.colours.empty()) {
+        for (const double channel : solid.colours[v]) number(channel);
+      } else if (colours_all_) {
+        out_.text(" 1 1 1");
+      }
+      out_.text("\n");
+    }
+    for (const std::uint32_t v : uvs_.gather(solid.uvs)) {
+      out_.text("vt ");
+      out_.number(static_cast<double>(solid.uvs[2 * v]));
+      number(static_cast<double>(solid.uvs[2 * v + 1]));
+      out_.text("\n");
+    }
+    for (const std::uint32_t v : normals_.gather(solid.normals)) {
+      const Vec3 n = vector_at(solid.normals, v);
+      line("vn ", placed ? n : rotate(solid.pose.rotation, n));
+      out_.text("\n");
     }
   }
 
@@ -122,44 +175,63 @@ class ObjWriter {
             static_cast<double>(values[at + 2])};
   }
 
+  void number(double value) {
+    out_.text(" ");
+    out_.number(value);
+  }
   // Rounded to float32 first: that is what every reader keeps.
   void line(std::string_view kind, Vec3 v) {
     out_.text(kind);
     out_.number(static_cast<double>(static_cast<float>(v.x)));
-    out_.text(" ");
-    out_.number(static_cast<double>(static_cast<float>(v.y)));
-    out_.text(" ");
-    out_.number(static_cast<double>(static_cast<float>(v.z)));
-    out_.text("\n");
-  }
-
-  void write_faces(const WallView& wall, std::uint32_t list, std::string_view material,
-                   std::string_view side) {
-    if (list == RenderMeshes::kNoList || wall.lists[list].count == 0) return;
-    out_.text("usemtl ");
-    out_.text(material);
-    out_.text(side);
-    const IndexList range = wall.lists[list];
-    const auto indices = wall.indices.subspan(range.begin, range.count);
-    for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
-      out_.text("f");
-      for (const std::uint32_t vertex : indices.subspan(i, 3)) {
-        out_.text(" ");
-        out_.integer(position_base_ + positions_[vertex]);
-        out_.text("/");
-        out_.integer(uv_base_ + uvs_[vertex]);
-        out_.text("/");
-        out_.integer(normal_base_ + normals_[vertex]);
-      }
-      out_.text("\n");
-    }
+    number(static_cast<double>(static_cast<float>(v.y)));
+    number(static_cast<double>(static_cast<float>(v.z)));
   }
 
   TextWriter out_;
   Distinct<3> positions_, normals_;
   Distinct<2> uvs_;
   std::uint64_t position_base_ = 1, uv_base_ = 1, normal_base_ = 1;
+  bool has_uvs_ = false, colours_all_ = false;
 };
+
+void write_spheres(const RecordedMoment& moment, ObjWriter& out) {
+  const SphereMesh sphere = sphere_mesh();
+  const std::vector<std::uint32_t> indices(sphere.indices.begin(), sphere.indices.end());
+  std::vector<float> normals, positions(3 * sphere.vertices.size());
+  for (const Vec3 v : sphere.vertices) {
+    for (const double x : {v.x, v.y, v.z}) normals.push_back(static_cast<float>(x));
+  }
+  for (const RecordedProjectile& projectile : moment.recording.projectiles) {
+    if (!is_there(moment.recording, projectile, moment.step)) continue;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      positions[i] = static_cast<float>(projectile.projectile.radius) * normals[i];
+    }
+    const Pose pose = pose_of(moment.recording, projectile, moment.step);
+    out.start({projectile.projectile.name, pose, positions, normals, {}, {}});
+    out.write_faces(indices, "steel", "_outer");
+  }
+}
+
+void write_parts(const RecordedMoment& moment, ObjWriter& out) {
+  const Recording& recording = moment.recording;
+  const GltfParts parts = plan_parts(recording, moment.step);
+  std::vector<Colour> colours;
+  for (std::uint32_t p = 0; p < recording.parts.size(); ++p) {
+    if (parts.mesh_of[p] == kNoMesh) continue;
+    const RecordedPart& part = recording.parts[p];
+    const GltfParts::Mesh& mesh = parts.meshes[parts.mesh_of[p]];
+    const PartMesh& shape = parts.shapes[mesh.shape].mesh;
+    const auto [r, g, b] = member_look(part.material).colour;
+    const Colour own{r / 255.0, g / 255.0, b / 255.0};
+    colours.clear();
+    for (std::uint32_t v = 0; part.has_ends && v < shape.vertex_count(); ++v) {
+      colours.push_back(lit_colour(own, mesh.lights, &shape.nearness[2 * std::size_t{v}]));
+    }
+    out.start({part.name, pose_of(recording, part, moment.step), shape.positions, shape.normals,
+               shape.uvs, colours});
+    out.write_faces(shape.indices, obj_name(part.material), part.has_ends ? "" : "_outer");
+  }
+}
 
 void write_material(TextWriter& out, const std::string& name,
                     const std::array<std::uint8_t, 3>& rgb, double roughness, double metallic) {
@@ -177,27 +249,90 @@ void write_material(TextWriter& out, const std::string& name,
   out.text("\n\n");
 }
 
-}  // namespace
-
-void write_obj(std::span<const WallView> walls, const std::string& material_file, ByteSink& out) {
+void check_name(const std::string& material_file) {
   if (std::ranges::any_of(material_file, [](unsigned char c) { return c < ' ' || c == 0x7F; })) {
     throw Error(ErrorCode::output, "an .obj cannot name its .mtl: control character in the name");
   }
-  ObjWriter(out).write(walls, material_file);
+}
+
+// Materials by name; each is written once.
+class MtlWriter {
+ public:
+  explicit MtlWriter(ByteSink& sink) : out_(sink) { out_.text("# sunder " SUNDER_VERSION "\n"); }
+
+  void write_wall(const std::string& material) {
+    write_outer(material);
+    const MaterialLook look = look_of(material);
+    write(material, "_inner", look.inner, look.inner_roughness, look.metallic);
+  }
+  void write_outer(const std::string& material) {
+    const MaterialLook look = look_of(material);
+    write(material, "_outer", look.outer, look.outer_roughness, look.metallic);
+  }
+  // White: the colour is in the vertices.
+  void write_member(const std::string& material) {
+    const MemberLook look = member_look(material);
+    write(material, "", {255, 255, 255}, look.roughness, look.metallic);
+  }
+  void finish() { out_.flush(); }
+
+ private:
+  void write(const std::string& material, std::string_view side,
+             const std::array<std::uint8_t, 3>& rgb, double roughness, double metallic) {
+    const std::string name = obj_name(material).append(side);
+    if (written_.insert(name).second) write_material(out_, name, rgb, roughness, metallic);
+  }
+  TextWriter out_;
+  std::set<std::string> written_;
+};
+
+}  // namespace
+
+void write_obj(std::span<const WallView> walls, const std::string& material_file, ByteSink& sink) {
+  check_name(material_file);
+  ObjWriter out(sink, material_file);
+  for (const WallView& wall : walls) {
+    out.write_wall(wall, [&wall](std::uint32_t) { return Pose{wall.position, wall.rotation}; });
+  }
+  out.finish();
+}
+
+void write_obj(std::span<const WallView> walls, const RecordedMoment& moment,
+               const std::string& material_file, ByteSink& sink) {
+  check_name(material_file);
+  ObjWriter out(sink, material_file);
+  // Where some corners have colours, assimp paints those without black.
+  if (!moment.recording.parts.empty()) out.colour_all();
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const Pose standing{walls[w].position, walls[w].rotation};
+    const std::vector<std::uint32_t>& track = moment.recording.walls[w].track;
+    out.write_wall(walls[w], [&](std::uint32_t chunk) {
+      return pose_at(moment.recording, track[chunk], moment.step, standing);
+    });
+  }
+  write_spheres(moment, out);
+  write_parts(moment, out);
+  out.finish();
 }
 
 void write_mtl(std::span<const WallView> walls, ByteSink& sink) {
-  TextWriter out(sink);
-  out.text("# sunder " SUNDER_VERSION "\n");
-  std::set<std::string> written;
-  for (const WallView& wall : walls) {
-    const std::string name = obj_name(wall.material);
-    if (!written.insert(name).second) continue;
-    const MaterialLook look = look_of(wall.material);
-    write_material(out, name + "_outer", look.outer, look.outer_roughness, look.metallic);
-    write_material(out, name + "_inner", look.inner, look.inner_roughness, look.metallic);
+  MtlWriter out(sink);
+  for (const WallView& wall : walls) out.write_wall(wall.material);
+  out.finish();
+}
+
+void write_mtl(std::span<const WallView> walls, const RecordedMoment& moment, ByteSink& sink) {
+  MtlWriter out(sink);
+  for (const WallView& wall : walls) out.write_wall(wall.material);
+  if (!moment.recording.projectiles.empty()) out.write_outer("steel");
+  for (const RecordedPart& part : moment.recording.parts) {
+    if (part.has_ends) {
+      out.write_member(part.material);
+    } else {
+      out.write_outer(part.material);
+    }
   }
-  out.flush();
+  out.finish();
 }
 
 }  // namespace sunder

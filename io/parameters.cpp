@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // docs/parameters.md, made of the tables that the scene reader uses.
+#include "io/building_keys.hpp"
 #include "io/field_row.hpp"
 #include "io/json_place.hpp"
 #include "io/printable.hpp"
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
+#include "io/sections.hpp"
 
 namespace sunder {
 namespace {
@@ -108,12 +110,90 @@ std::string materials_table() {
   return text;
 }
 
-/// What happens to the walls.
+/// The table of a struct, then of keys beside it.
+template <class Params>
+std::string table_of(std::span<const SceneKey> keys = {}) {
+  std::vector<DocRow> rows;
+  append_rows(rows, field_rows<Params>());
+  append_rows(rows, keys);
+  return table(rows);
+}
+
+template <class Named>
+std::string names_of(const std::vector<Named>& all) {
+  std::string text;
+  for (const Named& each : all) text += (text.empty() ? "" : ", ") + code(each.name);
+  return text + ".\n\n";
+}
+
+std::string joint_table() {
+  std::vector<FieldRow> fields = field_rows<JointClass>();
+  fields.erase(fields.begin());  // its name is the key
+  std::vector<DocRow> rows;
+  append_rows(rows, fields);
+  append_rows(rows, kJointKeys);
+  return "### Joint class\n\n"
+         "Values of `joints`. Left out, what breaks the joint of a post or beam follows from its "
+         "section and steel; posts have `bearing` true. Slabs and wall panels have 0.3 MN and "
+         "0.1 MN m along and about each axis and the interaction `ellipsoid`.\n\n" +
+         table(rows);
+}
+
+/// What a building names one by one.
+std::string given_tables() {
+  return "### Node\n\nOf `nodes`.\n\n" + table_of<FrameNode>({&kNodePlace, 1}) +
+         "### Member\n\nOf `members`: a straight post or beam between two nodes.\n\n" +
+         table_of<GivenMember>() + "### Slab given by itself\n\nOf `slabs`.\n\n" +
+         table_of<GivenSlab>({&kSlabNodes, 1}) +
+         "### Wall panel given by itself\n\nOf `wall_panels`.\n\n" +
+         table_of<GivenPanel>({&kPanelNodes, 1}) + "### Connection\n\nOf `connections`.\n\n" +
+         table_of<GivenJoint>();
+}
+
+std::string section_tables() {
+  return "### Section\n\nOf `sections`. A new one must give its shape, height, web, for i and rhs "
+         "its width, for i its flange; what else it leaves out is computed from these.\n\n" +
+         table_of<Section>() + "Built-in: " + names_of(builtin_sections()) +
+         "### Steel\n\nOf `steels`. A new one must give its strengths.\n\n" +
+         table_of<SteelGrade>() + "Built-in: " + names_of(builtin_steels());
+}
+
+std::string building_tables() {
+  std::vector<DocRow> rows;
+  append_rows(rows, kBuildingKeys);
+  append_rows(rows, field_rows<StoreyParams>());
+  append_rows(rows, field_rows<BreakingRules>());
+  std::string text =
+      "## Building\n\nA frame of posts, beams, slabs and wall panels: regular, given one by one, "
+      "or "
+      "both. At most " +
+      std::to_string(kMaxParts) +
+      " parts. Those of the regular one are called `post_<x>_<z>_<storey>`, "
+      "`beam_x_<x>_<z>_<storey>`, `beam_z_…`, `slab_…`, `wall_x_…`, `wall_z_…`, counted from "
+      "0.\n\n" +
+      table(rows);
+  text += "### Slab\n\nOf `slab`.\n\n" + table_of<SlabParams>() +
+          "### Wall panel\n\nOf `walls`.\n\n" + table_of<PanelParams>({&kPanelPattern, 1});
+  rows.clear();
+  append_rows(rows, kOverrideKeys);
+  append_rows(rows, field_rows<StoreyParams>());
+  for (DocRow& row : std::span(rows).subspan(std::size(kOverrideKeys))) {
+    row.default_value = "as before";
+  }
+  text += "### Override\n\nOf `overrides`.\n\n" + table(rows);
+  return text + joint_table() + given_tables() + section_tables();
+}
+
+/// What happens to walls and buildings.
 std::string run_tables() {
   std::vector<DocRow> rows;
   append_rows(rows, field_rows<Projectile>());
   append_rows(rows, kProjectileKeys);
-  std::string text = "## Projectile\n\nA solid sphere.\n\n" + table(rows) + "## Simulation\n\n";
+  std::string text = "## Projectile\n\nA solid sphere.\n\n" + table(rows) + building_tables();
+  rows.clear();
+  append_rows(rows, kScenarioKeys);
+  text += "## Scenario\n\nWhat happens to a building besides projectiles.\n\n" + table(rows) +
+          "## Simulation\n\n";
   rows.clear();
   append_rows(rows, field_rows<SimulationParams>());
   return text + table(rows);

@@ -6,12 +6,15 @@
 
 #include "fracture/wall.hpp"
 #include "io/json_place.hpp"
+#include "sim/frame.hpp"
 #include "sim/projectile.hpp"
 
 namespace sunder {
 
-/// Reads a list of projectiles. Their names differ from each other's and from those of the walls
-/// and their chunks: all become nodes of one file. Throws as Place::fail.
-std::vector<Projectile> read_projectiles(const Place& list, std::span<const Wall> walls);
+/// Reads a list of projectiles. Their names differ from each other's, from those of the walls and
+/// their chunks, and from those of the parts of the building, if there is one: all become nodes of
+/// one file. Throws as Place::fail.
+std::vector<Projectile> read_projectiles(const Place& list, std::span<const Wall> walls,
+                                         const Frame* building);
 
 }  // namespace sunder

@@ -64,9 +64,13 @@ Projectile read_projectile(const Place& place) {
 
 }  // namespace
 
-std::vector<Projectile> read_projectiles(const Place& list, std::span<const Wall> walls) {
+std::vector<Projectile> read_projectiles(const Place& list, std::span<const Wall> walls,
+                                         const Frame* building) {
   Owners owners;
   for (const Wall& wall : walls) owners.emplace(wall.name, "wall");
+  for (std::uint32_t i = 0; building && i < building->part_count(); ++i) {
+    owners.emplace(building->part_name(i), "part of the building");
+  }
   std::vector<Projectile> projectiles;
   for (std::size_t i = 0; i < list_at(list).size(); ++i) {
     const Place place(list, i);

@@ -9,5 +9,7 @@ namespace sunder {
 std::string report_schema();
 /// JSON Schema (draft-07) of what impact_report_json writes.
 std::string impact_report_schema();
+/// JSON Schema (draft-07) of what collapse_report_json writes.
+std::string collapse_report_schema();
 
 }  // namespace sunder

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "io/collapse_report.hpp"
 #include "io/report_schema.hpp"
 
 namespace sunder {
@@ -41,7 +43,8 @@ constexpr ReportKey kReportKeys[] = {
     {"hash", "string", "Of all triangles, bit for bit; 16 hexadecimal digits."},
 };
 
-constexpr ReportKey kImpactKeys[] = {
+// Of every run of a simulation: first keys, then …
+constexpr ReportKey kRunKeys[] = {
     {"version", "string", "Version of the program."},
     {"seed", "integer", "Seed of the random numbers."},
     {"steps", "integer", "Steps, one recorded pose each."},
@@ -49,6 +52,9 @@ constexpr ReportKey kImpactKeys[] = {
     {"simulated_s", "number", "Time that was simulated. Unit: s."},
     {"wall_s", "number", "Time that the run took. Unit: s."},
     {"step_ms", "object", "Time that a step took. Unit: ms."},
+};
+
+constexpr ReportKey kImpactKeys[] = {
     {"bodies", "integer", "Moving bodies at the end."},
     {"chunks", "integer", "Chunks of all walls at the end."},
     {"chunks_freed", "integer", "Chunks that are no longer part of a standing wall."},
@@ -67,11 +73,85 @@ constexpr ReportKey kImpactKeys[] = {
     {"energy", "object", "Where the energy went. Unit: J."},
     {"projectiles", "array", "What became of each projectile."},
     {"breaks", "array", "What broke, in order of time."},
+};
+
+// … and last ones.
+constexpr ReportKey kRunEndKeys[] = {
     {"solves", "object", "Solves of the static solver; zeros: there was none."},
     {"hash", "string", "Of all poses and breaks, bit for bit; 16 hexadecimal digits."},
     {"skipped", "object", "What was not done because nothing needed it."},
     {"warnings", "array", "What limits the trust in these numbers."},
     {"time", "object", "What each part of the run took, keys end in _s. Unit: s."},
+};
+
+constexpr ReportKey kCollapseKeys[] = {
+    {"bodies", "integer", "Moving bodies at the end."},
+    {"parts_freed", "integer", "Members, slabs and walls no longer joined to the ground."},
+    {"chunks_freed", "integer", "Of walls; 0: parts of a building do not break into chunks."},
+    {"broken_joints", "array", "Joints that broke, in order of time."},
+    {"broken_by", "object", "How many broke in which mode."},
+    {"broken_at_rest", "integer",
+     "Of them, before a projectile, a removal, a load or a motion of the ground."},
+    {"broken_bonds", "integer", "Of walls; 0: parts of a building do not break into chunks."},
+    {"max_utilisation", "number", "Largest of any joint or post from time 0 on; 1 breaks."},
+    {"utilisation_at_rest", "number", "Largest of any joint or post at time 0."},
+    {"first_failure_load", "number",
+     "Live load at the first failure under a rising load; 0: none. Unit: N/m²."},
+    {"joint_gap", "number", "Widest between the two sides of an intact joint. Unit: m."},
+    {"sag", "object", "How far the highest nodes of posts went down. Unit: m."},
+    {"reactions", "object", "What the ground gave."},
+    {"momentum_error", "number",
+     "Largest violation of the balance of momentum in a step, by the largest momentum."},
+    {"penetration_max", "number", "Deepest overlap of two bodies at the end of a step. Unit: m."},
+    {"energy", "object", "Where the energy went. Unit: J."},
+    {"projectiles", "array", "What became of each projectile."},
+    {"solver", "object", "How the motion was solved."},
+};
+
+constexpr ReportKey kJointBreakKeys[] = {
+    {"joint", "string", "Name of the joint: part@part or part@ground."},
+    {"time", "number", "Unit: s."},
+    {"utilisation", "number", "Demand divided by capacity of what broke it."},
+    {"mode", "string", "Why it broke."},
+    {"rule", "string",
+     "Its interaction of forces and torques, the rule of posts, or the projectile that hit."},
+    {"component", "string", "The largest share: N, Vy, Vz, T, My or Mz; empty in other modes."},
+};
+
+constexpr ReportKey kModeKeys[] = {
+    {"strength", "integer", "Forces and torques exceeded those of the joint."},
+    {"hit", "integer", "A projectile touched it."},
+    {"buckling", "integer", "The post below or above buckled."},
+    {"unbraced", "integer", "The last beam at the joint of two posts was gone."},
+    {"removed", "integer", "Its part was taken away by the scenario."},
+};
+
+constexpr ReportKey kSagKeys[] = {
+    {"mean", "number", "At time 0, mean of the nodes."},
+    {"max", "number", "At time 0, the largest."},
+    {"node", "string", "Where it is largest."},
+    {"end", "number", "The largest of those that still stand at the end."},
+};
+
+constexpr ReportKey kBuildingReactionKeys[] = {
+    {"weight", "number", "Of the building. Unit: N."},
+    {"error", "number", "Sum of the supports' forces and the weight, by the weight, at rest."},
+    {"supports", "array", "What each support carries at rest."},
+};
+
+constexpr ReportKey kSupportKeys[] = {
+    {"node", "string", "Name of the node."},
+    {"force", "array", "Of the ground on the building, x, y and z. Unit: N."},
+    {"torque", "array", "About the node, x, y and z. Unit: N m."},
+};
+
+constexpr ReportKey kSolverKeys[] = {
+    {"name", "string", "The solver that ran."},
+    {"joint_solver", "string", "Bullet's way to solve joints."},
+    {"iterations", "integer", "A step."},
+    {"warm_start", "boolean", "Joints start from the impulses of the last step."},
+    {"step", "number", "As in the scene. Unit: s."},
+    {"fallbacks", "integer", "Steps in which a direct solver failed and iterations took over."},
 };
 
 constexpr ReportKey kStepKeys[] = {
@@ -92,7 +172,7 @@ constexpr ReportKey kReactionKeys[] = {
 };
 
 constexpr ReportKey kEnergyKeys[] = {
-    {"in", "number", "Kinetic energy of the projectiles at their start."},
+    {"in", "number", "Of the projectiles at their start; by loads and motion of the ground."},
     {"kinetic", "number", "Of everything that moves at the end."},
     {"potential", "number", "Of it, against where it stood or started."},
     {"strain", "number", "Stored elastically."},
@@ -100,14 +180,21 @@ constexpr ReportKey kEnergyKeys[] = {
     {"friction", "number", "Lost by sliding."},
     {"contact", "number", "Lost by crushing and contacts that are not elastic."},
     {"numerical", "number", "What remains: the error of the simulation."},
+};
+
+constexpr ReportKey kPeakKeys[] = {
     {"peak_ratio", "number", "Largest mechanical energy by what had gone in by then."},
+};
+
+constexpr ReportKey kJointWorkKeys[] = {
+    {"joint", "number", "Lost in joints: shocks, and the correction of their drift."},
 };
 
 constexpr ReportKey kProjectileKeys[] = {
     {"name", "string", "As in the scene."},
-    {"hit", "boolean", "Met a wall."},
+    {"hit", "boolean", "Met a wall or a part of a building."},
     {"perforated", "boolean", "Left the wall on the other side."},
-    {"speed_before", "number", "At the first contact with a wall. Unit: m/s."},
+    {"speed_before", "number", "At that first contact. Unit: m/s."},
     {"residual_speed", "number", "Behind the wall; 0: it did not get through. Unit: m/s."},
     {"ballistic_speed", "number|null",
      "From which it goes through the wall, by the model; null: never. Unit: m/s."},
@@ -139,17 +226,29 @@ constexpr ReportKey kSkippedKeys[] = {
     {"poses_not_recorded", "integer", "Poses of what did not move."},
 };
 
-/// An object of these keys, all of them required.
-Json object_of(std::span<const ReportKey> keys) {
+constexpr ReportKey kCollapseSkippedKeys[] = {
+    {"body_steps_asleep", "integer", "Bodies × steps at rest."},
+    {"joint_steps_not_read", "integer", "Joints × steps whose load was known without asking."},
+    {"poses_not_recorded", "integer", "Poses of what did not move."},
+};
+
+/// An object of the keys of these tables, all of them required.
+Json object_of(std::initializer_list<std::span<const ReportKey>> tables) {
   Json properties = Json::object(), required = Json::array();
-  for (const ReportKey& key : keys) {
-    Json schema{{"type", key.type}, {"description", key.description}};
-    if (schema["type"] == "number|null") schema["type"] = {"number", "null"};
-    if (schema["type"] == "integer") schema["minimum"] = 0;
-    properties[key.name] = std::move(schema);
-    required.push_back(key.name);
+  for (const std::span<const ReportKey> keys : tables) {
+    for (const ReportKey& key : keys) {
+      Json schema{{"type", key.type}, {"description", key.description}};
+      if (schema["type"] == "number|null") schema["type"] = {"number", "null"};
+      if (schema["type"] == "integer") schema["minimum"] = 0;
+      properties[key.name] = std::move(schema);
+      required.push_back(key.name);
+    }
   }
   return {{"type", "object"}, {"properties", properties}, {"required", required}};
+}
+
+Json object_of(std::span<const ReportKey> keys) {
+  return object_of({keys});
 }
 
 /// Says what is in a key that object_of only named.
@@ -167,6 +266,20 @@ Json list_of(std::size_t size, Json items) {
 
 Json seconds() {
   return {{"patternProperties", {{"_s$", {{"type", "number"}, {"minimum", 0}}}}}};
+}
+
+Json point_schema() {
+  return list_of(3, {{"type", "number"}});
+}
+
+/// What every run of a simulation has.
+void fill_run(Json& properties) {
+  fill(properties["step_ms"], object_of(kStepKeys));
+  fill(properties["projectiles"], list_of(object_of(kProjectileKeys)));
+  fill(properties["solves"], object_of(kSolveKeys));
+  properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
+  fill(properties["warnings"], list_of({{"type", "string"}}));
+  fill(properties["time"], seconds());
 }
 
 std::string text_of(const char* title, const Json& schema) {
@@ -196,27 +309,42 @@ std::string report_schema() {
 }
 
 std::string impact_report_schema() {
-  Json schema = object_of(kImpactKeys);
+  Json schema = object_of({kRunKeys, kImpactKeys, kRunEndKeys});
   Json& properties = schema["properties"];
-  const Json number{{"type", "number"}}, count{{"type", "integer"}, {"minimum", 0}};
-  const Json point = list_of(3, number);
-  fill(properties["step_ms"], object_of(kStepKeys));
+  const Json count{{"type", "integer"}, {"minimum", 0}};
+  fill_run(properties);
   fill(properties["broken_joints"], list_of({{"type", "object"}}));
   fill(properties["freed"], object_of(kFreedKeys));
   fill(properties["freed"]["properties"]["by_decade"], list_of(6, count));
   fill(properties["reactions"], object_of(kReactionKeys));
-  fill(properties["reactions"]["properties"]["impulse"], point);
-  fill(properties["energy"], object_of(kEnergyKeys));
-  Json projectile = object_of(kProjectileKeys), event = object_of(kBreakKeys);
-  fill(event["properties"]["point"], point);
-  fill(properties["projectiles"], list_of(std::move(projectile)));
+  fill(properties["reactions"]["properties"]["impulse"], point_schema());
+  fill(properties["energy"], object_of({kEnergyKeys, kPeakKeys}));
+  Json event = object_of(kBreakKeys);
+  fill(event["properties"]["point"], point_schema());
   fill(properties["breaks"], list_of(std::move(event)));
-  fill(properties["solves"], object_of(kSolveKeys));
-  properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
   fill(properties["skipped"], object_of(kSkippedKeys));
-  fill(properties["warnings"], list_of({{"type", "string"}}));
-  fill(properties["time"], seconds());
   return text_of("sunder report of impact", schema);
+}
+
+std::string collapse_report_schema() {
+  Json schema = object_of({kRunKeys, kCollapseKeys, kRunEndKeys});
+  Json& properties = schema["properties"];
+  fill_run(properties);
+  Json joint = object_of(kJointBreakKeys);
+  joint["properties"]["mode"]["enum"] = kBreakModes;
+  fill(properties["broken_joints"], list_of(std::move(joint)));
+  fill(properties["broken_by"], object_of(kModeKeys));
+  fill(properties["sag"], object_of(kSagKeys));
+  fill(properties["reactions"], object_of({kBuildingReactionKeys, kReactionKeys}));
+  Json& reactions = properties["reactions"]["properties"];
+  fill(reactions["impulse"], point_schema());
+  Json support = object_of(kSupportKeys);
+  for (const char* key : {"force", "torque"}) fill(support["properties"][key], point_schema());
+  fill(reactions["supports"], list_of(std::move(support)));
+  fill(properties["energy"], object_of({kEnergyKeys, kJointWorkKeys}));
+  fill(properties["solver"], object_of(kSolverKeys));
+  fill(properties["skipped"], object_of(kCollapseSkippedKeys));
+  return text_of("sunder report of collapse", schema);
 }
 
 }  // namespace sunder

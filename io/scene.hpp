@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "fracture/wall.hpp"
+#include "sim/collapse.hpp"
+#include "sim/frame.hpp"
 #include "sim/material.hpp"
 #include "sim/projectile.hpp"
 #include "sim/simulation_params.hpp"
@@ -21,6 +24,10 @@ struct Scene {
   std::vector<Wall> walls;
   std::vector<Material> materials;  ///< built in, then the scene's own
   std::vector<Projectile> projectiles;
+  std::optional<Frame> building;    ///< sound and joined
+  BreakingRules rules;              ///< of the building's posts and joints
+  Scenario scenario;
+  std::filesystem::path ground_motion_file;  ///< that the scenario names; empty: none
   SimulationParams simulation;
   std::vector<std::string> keys;  ///< top-level keys that the file gives, in its order
 };
@@ -48,8 +55,8 @@ const std::vector<Material>& builtin_materials();
 /// The material of that name; throws Error{input} with "did you mean".
 const Material& find_material(const std::vector<Material>& materials, const std::string& name);
 
-/// JSON Schema (draft-07) of "scene", "material", "report" (of fracture and check) or
-/// "impact-report". Throws Error{usage} for another.
+/// JSON Schema (draft-07) of "scene", "material", "report" (of fracture and check), "impact-report"
+/// or "collapse-report". Throws Error{usage} for another.
 std::string json_schema(std::string_view which);
 /// docs/parameters.md, from the same tables.
 std::string parameters_markdown();

@@ -4,10 +4,14 @@
 #include <filesystem>
 #include <unordered_set>
 
+#include "io/asset_path.hpp"
+#include "io/building.hpp"
 #include "io/materials.hpp"
 #include "io/overrides.hpp"
+#include "io/patterns.hpp"
 #include "io/printable.hpp"
 #include "io/projectiles.hpp"
+#include "io/scenario.hpp"
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
 #include "io/strict_json.hpp"
@@ -17,55 +21,6 @@ namespace sunder {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Fails for the pair of keys when low > high; either may be left at its default.
-void check_order(const Place& object, std::string_view low_key, double low,
-                 std::string_view high_key, double high) {
-  if (low <= high) return;
-  const JsonValue* given = object.value.find(high_key);
-  const std::string_view key = given ? high_key : low_key;
-  const Place place(object, key, given ? *given : *object.value.find(low_key));
-  place.fail(std::string(low_key) + " = " + number_text(low) + " must not be above " +
-             std::string(high_key) + " = " + number_text(high));
-}
-
-template <class Params>
-void check_together(const Params&, const Place&) {}
-
-void check_together(const SpiderwebParams& params, const Place& place) {
-  check_order(place, "min_points", static_cast<double>(params.min_points), "max_points",
-              static_cast<double>(params.max_points));
-  check_order(place, "min_radius", params.min_radius, "max_radius", params.max_radius);
-}
-
-template <class Params>
-PatternParams read_pattern_params(const Place& place) {
-  check_keys(place, keys_of<Params>({"type"}));
-  Params params;
-  read_fields(params, place);
-  check_together(params, place);
-  return params;
-}
-
-/// The reader of pattern type i, for every i: the variant and kPatternTypes have one order.
-template <std::size_t... i>
-PatternParams read_pattern_of(std::size_t type, const Place& place, std::index_sequence<i...>) {
-  using Reader = PatternParams (*)(const Place&);
-  constexpr Reader kReaders[] = {
-      &read_pattern_params<std::variant_alternative_t<i, PatternParams>>...};
-  return kReaders[type](place);
-}
-
-PatternParams read_pattern(const Place& place) {
-  constexpr std::size_t kTypes = std::variant_size_v<PatternParams>;
-  static_assert(std::size(kPatternTypes) == kTypes);
-  object_at(place);
-  require_key(place, "type", "\"type\": \"voronoi-grid\"");
-  const std::string type = text_at(Place(place, "type", *place.value.find("type")), kPatternTypes);
-  const auto found = std::find(std::begin(kPatternTypes), std::end(kPatternTypes), type);
-  return read_pattern_of(static_cast<std::size_t>(found - std::begin(kPatternTypes)), place,
-                         std::make_index_sequence<kTypes>());
-}
 
 Loop read_shape(const Place& place) {
   std::vector<std::string_view> keys;
@@ -86,41 +41,10 @@ Loop read_shape(const Place& place) {
   return rectangle(size, at ? pair_at(Place(place, "at", *at), kShapePlace, "m") : Vec2{});
 }
 
-/// True when `path` lies in `folder` or below; both canonical.
-bool is_inside(const fs::path& path, const fs::path& folder) {
-  const auto [folder_end, ignored] =
-      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-  return folder_end == folder.end();
-}
-
-/// Path of an asset that a scene in `folder` names. Symbolic links count as where they lead.
-std::string resolve_asset(const Place& place, const fs::path& folder, bool allow_outside) {
-  const fs::path given = text_at(place);
-  if (given.empty()) place.fail("an asset is the path of a file, got an empty text");
-  const std::string shown = "the asset " + describe(place.value);
-  const fs::path path = (folder / given).lexically_normal();
-  std::error_code fault;
-  const fs::path home =
-      fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder, fault), fault);
-  if (fault) place.fail("the scene's folder cannot be read: " + fault.message());
-  const fs::path real = fs::weakly_canonical(fs::absolute(path, fault), fault);
-  if (fault) place.fail(shown + " cannot be found: " + fault.message());
-  if (!allow_outside && (given.is_absolute() || !is_inside(real, home))) {
-    place.fail(shown +
-               " is not in the scene's folder; move it there or allow it with --allow-outside");
-  }
-  if (!fs::is_regular_file(real, fault)) {
-    place.fail(shown + (fs::exists(real, fault) ? " is not a regular file" : " does not exist") +
-               ", paths are relative to the scene file");
-  }
-  return path.string();
-}
-
 /// What reading one wall needs from the scene around it.
 struct WallContext {
   const std::vector<Material>& materials;
-  const fs::path& folder;
-  bool allow_outside;
+  SceneFolder folder;
 };
 
 /// An asset brings its own outline, openings and pattern, and a material unless one is given.
@@ -135,7 +59,7 @@ void read_asset(Wall& wall, const Place& place, const WallContext& context) {
     }
   }
   if (!place.value.find("material")) wall.material.clear();
-  wall.asset = resolve_asset(Place(place, "asset", *asset), context.folder, context.allow_outside);
+  wall.asset = path_at(Place(place, "asset", *asset), "asset", context.folder);
 }
 
 void read_region(Wall& wall, const Place& place) {
@@ -216,20 +140,35 @@ SimulationParams read_simulation(const Place& place) {
   return params;
 }
 
+void read_buildings(Scene& scene, const Place& place, const SceneFolder& folder) {
+  if (const JsonValue* building = place.value.find("building")) {
+    const Place at(place, "building", *building);
+    scene.building = read_building(at, scene.materials);
+    read_fields(scene.rules, at);
+  }
+  const JsonValue* scenario = place.value.find("scenario");
+  if (!scenario) return;
+  const Place at(place, "scenario", *scenario);
+  if (!scene.building) at.fail("happens to a building, the key \"building\" is missing");
+  scene.scenario = read_scenario(at, *scene.building, folder);
+  if (const JsonValue* motion = at.value.find("ground_motion")) {
+    scene.ground_motion_file =
+        path_at(Place(at, "ground_motion", *motion), "ground motion", folder);
+  }
+}
+
 /// What verbs other than fracture read.
 void read_run(Scene& scene, const Place& place) {
   if (const JsonValue* projectiles = place.value.find("projectiles")) {
-    scene.projectiles = read_projectiles(Place(place, "projectiles", *projectiles), scene.walls);
+    scene.projectiles = read_projectiles(Place(place, "projectiles", *projectiles), scene.walls,
+                                         scene.building ? &*scene.building : nullptr);
   }
   if (const JsonValue* simulation = place.value.find("simulation")) {
     scene.simulation = read_simulation(Place(place, "simulation", *simulation));
   }
-  if (const JsonValue* building = place.value.find("building")) {
-    object_at(Place(place, "building", *building));
-  }
 }
 
-Scene read_tree(const Place& place, const fs::path& folder, bool allow_outside) {
+Scene read_tree(const Place& place, const SceneFolder& folder) {
   std::vector<std::string_view> keys;
   append_keys(keys, kSceneKeys);
   check_keys(place, keys);
@@ -247,13 +186,14 @@ Scene read_tree(const Place& place, const fs::path& folder, bool allow_outside) 
   }
   for (const JsonMember& member : object_at(place)) scene.keys.push_back(member.key);
   const JsonValue* walls = place.value.find("walls");
-  const WallContext context{scene.materials, folder, allow_outside};
+  const WallContext context{scene.materials, folder};
   if (walls) read_walls(scene, Place(place, "walls", *walls), context);
   if (scene.walls.empty() && !place.value.find("building")) {
     const std::string example = "for example \"walls\": [{\"outline\": {\"rect\": [6, 3]}}]";
     if (walls) Place(place, "walls", *walls).fail("no wall and no building, " + example);
     place.fail("the key \"walls\" is missing, " + example);
   }
+  read_buildings(scene, place, folder);
   read_run(scene, place);
   return scene;
 }
@@ -265,7 +205,8 @@ Scene parse_scene(std::string_view text, const std::string& name, const ScenePar
   const Place place(name, root);
   object_at(place);
   for (const std::string& override_text : params.overrides) apply_override(root, override_text);
-  return read_tree(place, fs::path(name).parent_path(), params.allow_outside);
+  const fs::path folder = fs::path(name).parent_path();
+  return read_tree(place, {folder, params.allow_outside});
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneParams& params) {

@@ -38,9 +38,11 @@ inline constexpr SceneKey kSceneKeys[] = {
      "Materials of the scene's own. One with the name of a built-in material replaces the values "
      "it gives."},
     {"projectiles", "list of projectiles", "[]", "",
-     "What hits the walls, see below; `sunder fracture` does not use it."},
-    {"building", "object", "none", "",
-     "A frame building; `sunder fracture` and `sunder impact` do not use it."},
+     "What hits the walls or the building, see below; `sunder fracture` does not use it."},
+    {"building", "building", "none", "",
+     "A frame building, see below; `sunder fracture` and `sunder impact` do not use it."},
+    {"scenario", "scenario", "{}", "",
+     "What happens to the building besides projectiles, see below; needs a building."},
     {"simulation", "simulation", "{}", "",
      "How long and how exactly to simulate, see below; `sunder fracture` does not use it."},
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/building_keys.hpp"
 #include "io/field_row.hpp"
 #include "io/printable.hpp"
 #include "io/report_schema.hpp"
@@ -175,6 +176,145 @@ Json projectile_schema() {
   return schema;
 }
 
+Json integer_pair_schema(const Range& range) {
+  Json schema = tuple_schema(2, range);
+  schema["items"] = number_schema("integer", range);
+  return schema;
+}
+
+/// Adds the rows of a table with their schemas.
+template <std::size_t count>
+void add_keys(Json& properties, const SceneKey (&table)[count],
+              const std::array<Json, count>& schemas) {
+  for (std::size_t i = 0; i < count; ++i) add_key(properties, table[i], schemas[i]);
+}
+
+/// A list of at most as many as a building's short lists have.
+Json short_list_schema(Json items) {
+  Json schema = list_schema(std::move(items));
+  schema["maxItems"] = kMaxBuildingList;
+  return schema;
+}
+
+Json distinct(Json list) {
+  list["uniqueItems"] = true;
+  return list;
+}
+
+/// Left out with `false`.
+Json or_false(Json schema) {
+  return {{"anyOf", Json::array({Json{{"const", false}}, std::move(schema)})}};
+}
+
+/// Slab or wall panel of every bay. Without defaults in an override, which changes what was before.
+Json panel_schema(Json schema, bool is_override) {
+  for (const char* key : {"thickness", "material"}) {
+    if (is_override) schema["properties"][key].erase("default");
+  }
+  return or_false(std::move(schema));
+}
+
+Json slab_schema(bool is_override) {
+  return panel_schema(fields_schema(field_rows<SlabParams>()), is_override);
+}
+
+Json walls_schema(bool is_override) {
+  Json schema = fields_schema(field_rows<PanelParams>());
+  add_key(schema["properties"], kPanelPattern, reference("pattern"));
+  return panel_schema(std::move(schema), is_override);
+}
+
+Json override_schema() {
+  Json schema = fields_schema(field_rows<StoreyParams>(), Json::object(), {"storeys"});
+  for (Json& each : schema["properties"]) each.erase("default");
+  add_keys(schema["properties"], kOverrideKeys,
+           std::array<Json, std::size(kOverrideKeys)>{
+               integer_pair_schema(kStoreyNumber), number_schema("number", kStoreyHeight),
+               slab_schema(true), walls_schema(true), integer_pair_schema(kBayNumber),
+               integer_pair_schema(kBayNumber)});
+  return schema;
+}
+
+Json joint_class_schema() {
+  std::vector<FieldRow> rows = field_rows<JointClass>();
+  rows.erase(rows.begin());  // its name is the key
+  Json schema = fields_schema(rows);
+  for (const SceneKey& row : kJointKeys) {
+    add_key(schema["properties"], row, tuple_schema(3, row.range));
+  }
+  const auto has = [](const char* key) { return Json{{"required", {key}}}; };
+  schema["if"] = {{"anyOf", Json::array({has("force"), has("torque")})}};
+  schema["then"] = {{"required", {"force", "torque"}}};
+  return schema;
+}
+
+/// Fields of a struct and one required key beside them.
+template <class Params>
+Json given_schema(const SceneKey& row, Json value) {
+  Json schema = fields_schema(field_rows<Params>(), Json::object(), {std::string(row.name)});
+  add_key(schema["properties"], row, std::move(value));
+  return schema;
+}
+
+Json corners_schema() {
+  Json schema = distinct(list_schema(text_schema(), 4));
+  schema["maxItems"] = 4;
+  return schema;
+}
+
+/// A section or steel, whose names may have points.
+template <class Params>
+Json table_entry_schema() {
+  Json schema = fields_schema(field_rows<Params>());
+  schema["properties"]["name"]["pattern"] = std::string(kSectionNamePattern);
+  for (Json& each : schema["properties"]) each.erase("default");
+  return schema;
+}
+
+Json building_schema() {
+  Json bay = tuple_schema(2, kBay);
+  Json lengths = list_schema(number_schema("number", kBay), 1);
+  lengths["maxItems"] = static_cast<std::size_t>(kPosts.high) - 1;
+  bay["items"] = {{"anyOf", Json::array({number_schema("number", kBay), std::move(lengths)})}};
+  Json part_pattern{{"type", "string"}, {"pattern", std::string(kPartPattern)}};
+  Json joints{{"type", "object"},
+              {"propertyNames", {{"pattern", std::string(kNamePattern)}}},
+              {"additionalProperties", reference("joint_class")}};
+  const std::array<Json, std::size(kBuildingKeys)> schemas{
+      integer_pair_schema(kPosts),
+      number_schema("integer", kStoreys),
+      number_schema("number", kStoreyHeight),
+      std::move(bay),
+      slab_schema(false),
+      walls_schema(false),
+      tuple_schema(3, kBuildingPlace),
+      short_list_schema(reference("override")),
+      distinct(short_list_schema(std::move(part_pattern))),
+      std::move(joints),
+      list_schema(given_schema<FrameNode>(kNodePlace, tuple_schema(3, kNodePlace.range))),
+      list_schema(fields_schema(field_rows<GivenMember>())),
+      list_schema(given_schema<GivenSlab>(kSlabNodes, corners_schema())),
+      list_schema(given_schema<GivenPanel>(kPanelNodes, corners_schema())),
+      list_schema(fields_schema(field_rows<GivenJoint>())),
+      short_list_schema(table_entry_schema<Section>()),
+      short_list_schema(table_entry_schema<SteelGrade>())};
+  Json schema = fields_schema(field_rows<StoreyParams>());
+  add_keys(schema["properties"], kBuildingKeys, schemas);
+  for (const FieldRow& row : field_rows<BreakingRules>()) {
+    schema["properties"][std::string(row.name)] = field_schema(row);
+  }
+  return schema;
+}
+
+Json scenario_schema() {
+  Json properties = Json::object();
+  add_keys(properties, kScenarioKeys,
+           std::array<Json, std::size(kScenarioKeys)>{distinct(short_list_schema(text_schema())),
+                                                      number_schema("number", kLoadRate),
+                                                      text_schema()});
+  return object_schema(std::move(properties));
+}
+
 Json with_title(const std::string& title, Json schema) {
   Json whole{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
   whole.update(schema);
@@ -190,19 +330,24 @@ Json scene_schema() {
                                                         list_schema(reference("wall")),
                                                         list_schema(reference("material")),
                                                         list_schema(reference("projectile")),
-                                                        {{"type", "object"}},
+                                                        reference("building"),
+                                                        reference("scenario"),
                                                         reference("simulation")};
   Json properties = Json::object();
-  for (std::size_t i = 0; i < std::size(kSceneKeys); ++i) {
-    add_key(properties, kSceneKeys[i], schemas[i]);
-  }
+  add_keys(properties, kSceneKeys, schemas);
   Json schema = object_schema(std::move(properties), {"sunder"});
   schema["anyOf"] = Json::array({Json{{"required", {"walls"}}}, Json{{"required", {"building"}}}});
+  schema["if"] = {{"required", {"scenario"}}};
+  schema["then"] = {{"required", {"building"}}};
   schema["definitions"] = {{"wall", wall_schema()},
                            {"shape", shape_schema()},
                            {"pattern", pattern_schema()},
                            {"material", fields_schema(field_rows<Material>())},
                            {"projectile", projectile_schema()},
+                           {"building", building_schema()},
+                           {"override", override_schema()},
+                           {"joint_class", joint_class_schema()},
+                           {"scenario", scenario_schema()},
                            {"simulation", fields_schema(field_rows<SimulationParams>())}};
   return with_title("sunder scene", std::move(schema));
 }
@@ -210,13 +355,15 @@ Json scene_schema() {
 }  // namespace
 
 std::string json_schema(std::string_view which) {
-  constexpr std::string_view kNames[] = {"scene", "material", "report", "impact-report"};
+  constexpr std::string_view kNames[] = {"scene", "material", "report", "impact-report",
+                                         "collapse-report"};
   if (which == "scene") return scene_schema().dump(2) + '\n';
   if (which == "material") {
     return with_title("sunder material", fields_schema(field_rows<Material>())).dump(2) + '\n';
   }
   if (which == "report") return report_schema();
   if (which == "impact-report") return impact_report_schema();
+  if (which == "collapse-report") return collapse_report_schema();
   throw Error(ErrorCode::usage,
               "no schema of \"" + printable(which, 40) + '"' + hint_for(which, kNames));
 }

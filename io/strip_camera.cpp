@@ -13,9 +13,13 @@ namespace sunder {
 namespace {
 
 constexpr double kAzimuth = 40.0 / 360, kElevation = 11.0 / 360;  // turns
-constexpr double kHalfWidth = 0.36;                               // slope of the picture's side
+constexpr double kBuildingElevation = 13.0 / 360;
+constexpr double kHalfWidth = 0.36;  // slope of the picture's side
 constexpr double kMargin = 1.06;
-constexpr double kDebris = 0.6;  // depth of the debris shown, of the wall's smaller side
+constexpr double kDebris = 0.6;      // depth of the debris shown, of the wall's smaller side
+constexpr double kApron = 0.25;      // width of the ground shown around a building, of its height
+constexpr double kNarrowest = 5500;  // picture of a tower, picture units
+constexpr double kNear = 0.4;  // distance of a projectile's start that is shown, of its diagonal
 
 Vec3 unit(Vec3 v) {
   const double size = length(v);
@@ -165,6 +169,94 @@ double visibility(const Recording& recording, const StripCamera& camera, const I
   return share(interest.chunks) + 0.3 * share(interest.projectiles);
 }
 
+// Corners of a part's bounding box where it stands, world.
+std::vector<Vec3> corners_of(const RecordedPart& part) {
+  std::vector<Vec3> corners;
+  const Box box = bounding_box(part.outline.outline);
+  for (const double x : {box.low.x, box.high.x}) {
+    for (const double y : {box.low.y, box.high.y}) {
+      for (const double z : {-part.half_length, part.half_length}) {
+        corners.push_back(part.standing * Vec3{x, y, z});
+      }
+    }
+  }
+  return corners;
+}
+
+// Along world axes, as the building stood.
+struct Bounds {
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  Vec3 middle() const { return 0.5 * (low + high); }
+  Vec3 size() const { return high - low; }
+};
+
+Bounds bounds_of(std::span<const Vec3> points) {
+  Bounds result;
+  for (const Vec3 p : points) {
+    result.low = {std::min(result.low.x, p.x), std::min(result.low.y, p.y),
+                  std::min(result.low.z, p.z)};
+    result.high = {std::max(result.high.x, p.x), std::max(result.high.y, p.y),
+                   std::max(result.high.z, p.z)};
+  }
+  return result;
+}
+
+// Where it begins to break: what flies at it comes from there; else its first broken joint.
+Vec3 origin_of_collapse(const Recording& recording, Vec3 middle) {
+  if (!recording.projectiles.empty()) return recording.projectiles[0].projectile.position;
+  const auto first = std::ranges::min_element(recording.joints, {}, &RecordedJoint::broken);
+  return first == recording.joints.end() || std::isinf(first->broken) ? middle : first->point;
+}
+
+// What the picture of a building shows: its parts as they stood, ground around them for what falls,
+// and projectiles that start near.
+std::vector<Vec3> building_frame(const Recording& recording, std::optional<double> ground) {
+  std::vector<Vec3> points;
+  for (const RecordedPart& part : recording.parts) {
+    const std::vector<Vec3> corners = corners_of(part);
+    points.insert(points.end(), corners.begin(), corners.end());
+  }
+  const Bounds bounds = bounds_of(points);
+  const Vec3 size = bounds.size();
+  const double apron = kApron * std::max(size.y, 0.5 * std::min(size.x, size.z));
+  for (const double x : {bounds.low.x - apron, bounds.high.x + apron}) {
+    for (const double z : {bounds.low.z - apron, bounds.high.z + apron}) {
+      points.push_back({x, ground.value_or(bounds.low.y), z});
+    }
+  }
+  for (const auto& [projectile, track] : recording.projectiles) {
+    const Vec3 p = projectile.position;
+    const Vec3 nearest{std::clamp(p.x, bounds.low.x, bounds.high.x),
+                       std::clamp(p.y, bounds.low.y, bounds.high.y),
+                       std::clamp(p.z, bounds.low.z, bounds.high.z)};
+    if (length(p - nearest) < kNear * length(size)) points.push_back(p);
+  }
+  return points;
+}
+
+// From the corner next to where the collapse begins, the longer side of the plan seen more.
+StripCamera place_building_camera(const Recording& recording, std::optional<double> ground) {
+  const std::vector<Vec3> points = building_frame(recording, ground);
+  const Bounds bounds = bounds_of(points);
+  const Vec3 size = bounds.size();
+  const Vec3 from = origin_of_collapse(recording, bounds.middle()) - bounds.middle();
+  const Vec2 turn = unit_at_turns(kAzimuth), rise = unit_at_turns(kBuildingElevation);
+  const bool is_deep = size.z > size.x;
+  const Vec3 flat{(from.x < 0 ? -1 : 1) * (is_deep ? turn.x : turn.y), 0,
+                  (from.z < 0 ? -1 : 1) * (is_deep ? turn.y : turn.x)};
+  StripCamera camera = fitted(rise.x * flat + Vec3{0, rise.y, 0}, points);
+  double reach = 0;
+  for (const Vec3 p : points) {
+    reach = std::max(reach, std::abs(camera.project(camera.see(p)).x - 0.5 * kStripWidth));
+  }
+  camera.width = std::clamp(2 * kMargin * reach, kNarrowest, kStripWidth);
+  const Vec3 face = is_deep ? Vec3{flat.x, 0, 0} : Vec3{0, 0, flat.z};
+  const double side = dot(face, camera.right) < 0 ? -1 : 1;
+  const Vec3 level = unit({camera.back.x, 0, camera.back.z});
+  camera.light = unit(0.75 * side * camera.right + 0.6 * level + Vec3{0, 1, 0});
+  return camera;
+}
+
 }  // namespace
 
 ChunkPlace place_of(const Recording& recording, const RecordedWall& wall, std::uint32_t chunk,
@@ -180,6 +272,7 @@ ChunkPlace place_of(const Recording& recording, const RecordedWall& wall, std::u
 
 StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps,
                          std::optional<double> ground) {
+  if (!recording.parts.empty()) return place_building_camera(recording, ground);
   const Interest interest = find_interest(recording, steps, ground);
   Vec3 normal{0, 0, 1};
   if (const RecordedWall* wall = most_broken(recording)) {

@@ -15,10 +15,11 @@ constexpr double kStripWidth = 10000, kStripHeight = 6400;
 
 /// A pinhole camera without roll, looking slightly down.
 struct StripCamera {
-  Vec3 eye, right, up, back;  ///< unit vectors, right-handed; it looks along -back
-  double focal = 1;           ///< picture units per unit of slope
-  double nearest = 0.01;      ///< what is nearer than this is not drawn, m
-  Vec3 light{0, 1, 0};        ///< unit, to the sun: over a shoulder, on the side that walls face
+  Vec3 eye, right, up, back;   ///< unit vectors, right-handed; it looks along -back
+  double focal = 1;            ///< picture units per unit of slope
+  double nearest = 0.01;       ///< what is nearer than this is not drawn, m
+  double width = kStripWidth;  ///< about the picture's middle, of what is worth showing
+  Vec3 light{0, 1, 0};         ///< unit, to the sun: over a shoulder, on the side that walls face
 
   /// {right, up, distance along the line of sight}, m.
   Vec3 see(Vec3 world) const {
@@ -37,6 +38,8 @@ struct StripCamera {
 /// near that the walls and what happens close to them fill the picture: 0.6 of a wall's width or
 /// height (the smaller) on the side that chunks leave by, and the ground below it (at a height in
 /// m; none: not shown) if that is no farther than the wall is high. What flies beyond is cut off.
+/// A building is seen whole as it stood, with some ground around it and projectiles that start
+/// near, from the corner next to where the first projectile comes from or the first joint breaks.
 StripCamera place_camera(const Recording& recording, std::span<const std::uint32_t> steps,
                          std::optional<double> ground = {});
 

@@ -152,9 +152,10 @@ class Painter {
     }
   }
 
-  std::vector<std::uint32_t> run() {
+  std::vector<std::uint32_t> run(std::vector<std::uint32_t>* cut) {
     while (!left_.empty()) {
-      const std::uint32_t next = ready_.empty() ? left_.begin()->second : ready_.begin()->second;
+      std::uint32_t next = ready_.empty() ? left_.begin()->second : ready_.begin()->second;
+      if (ready_.empty() && cut) cut->push_back(next = find_in_ring());
       paint(next);
       if (solids_[next].is_flat) paint_flat(solids_[next].body);
     }
@@ -176,6 +177,27 @@ class Painter {
       if (--waiting_.count[k] == 0 && !done_[k]) add_ready(k);
     }
   }
+  // The farthest solid of a ring of solids that hide each other, one the farthest one left waits
+  // for.
+  std::uint32_t find_in_ring() {
+    if (before_.empty()) find_before();
+    std::vector<std::uint32_t> way;
+    std::map<std::uint32_t, std::size_t> place_on_way;
+    std::uint32_t i = left_.begin()->second;
+    while (place_on_way.try_emplace(i, way.size()).second) {
+      way.push_back(i);
+      i = *std::ranges::find_if(before_[i], [this](std::uint32_t k) { return !done_[k]; });
+    }
+    way.erase(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(place_on_way[i]));
+    return *std::ranges::max_element(way, {},
+                                     [this](std::uint32_t k) { return solids_[k].distance; });
+  }
+  void find_before() {
+    before_.resize(solids_.size());
+    for (std::uint32_t i = 0; i < before_.size(); ++i) {
+      for (const std::uint32_t k : waiting_.after[i]) before_[k].push_back(i);
+    }
+  }
   // All flat solids of the body that are ready, and those that become so.
   void paint_flat(std::uint32_t body) {
     std::vector<std::uint32_t>& list = flat_[body];
@@ -187,6 +209,7 @@ class Painter {
 
   std::span<const StripSolid> solids_;
   Waiting waiting_;
+  std::vector<std::vector<std::uint32_t>> before_;  // whom each waits for; filled for rings
   std::vector<bool> done_;
   std::vector<std::uint32_t> order_;
   std::set<Entry> left_, ready_;
@@ -214,8 +237,9 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   return hull;
 }
 
-std::vector<std::uint32_t> painters_order(std::span<const StripSolid> solids) {
-  return Painter(solids).run();
+std::vector<std::uint32_t> painters_order(std::span<const StripSolid> solids,
+                                          std::vector<std::uint32_t>* cut) {
+  return Painter(solids).run(cut);
 }
 
 }  // namespace sunder

@@ -32,8 +32,10 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points);
 /// Order in which solids are painted so that what is in front comes later. Two disjoint convex
 /// solids are separated by a plane (a face of either, or along an edge of each): the one on the
 /// eye's side can only hide the other; of two that overlap a little, by the plane that comes
-/// nearest to it. Rings of solids that each hide the next are cut at the farthest one. Flat solids
-/// of one body follow each other where that is allowed.
-std::vector<std::uint32_t> painters_order(std::span<const StripSolid> solids);
+/// nearest to it. Flat solids of one body follow each other where that is allowed. Rings of solids
+/// that each hide the next are cut: at the farthest solid left; or, if `cut` asks where, at the
+/// farthest of the ring itself. Those that `cut` gets can be put in order once they are divided.
+std::vector<std::uint32_t> painters_order(std::span<const StripSolid> solids,
+                                          std::vector<std::uint32_t>* cut = nullptr);
 
 }  // namespace sunder

@@ -2,16 +2,22 @@
 #include "io/strip_picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <map>
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "io/moment.hpp"
+#include "io/strip_building.hpp"
 #include "io/strip_camera.hpp"
 #include "io/strip_order.hpp"
+#include "io/strip_stress.hpp"
 #include "io/wall_view.hpp"
 #include "meshing/trig.hpp"
 
@@ -21,6 +27,9 @@ namespace {
 StripColour colour_of(const std::array<std::uint8_t, 3>& rgb) {
   return {static_cast<double>(rgb[0]), static_cast<double>(rgb[1]), static_cast<double>(rgb[2])};
 }
+
+constexpr double kFaintest = 0.015;  // light that is drawn
+constexpr int kMostDivisions = 5;    // of one part: into at most 2^5
 
 struct Look {
   StripColour outer, inner;
@@ -41,12 +50,6 @@ StripColour shaded(const StripColour& base, Vec3 normal, Vec3 light) {
   StripColour result;
   for (std::size_t i = 0; i < 3; ++i) result[i] = base[i] * strength * tint[i];
   return result;
-}
-
-// A stroke in a face's own colour, so that nothing shines through where it meets the next one.
-std::string_view closed(const ChunkPlace& place) {
-  return place.track == kNoTrack ? R"(" stroke-opacity="1" stroke-width="22)"
-                                 : R"(" stroke-opacity="1)";
 }
 
 // A solid, and what is needed to draw it.
@@ -71,14 +74,17 @@ class Picture {
       }
       looks_.push_back(strip_look(wall.asset.wall.material));
     }
+    add_building();
     for (const BreakEvent& event : scene_.recording.events) {
       const bool has_happened = event.time <= scene_.recording.times[step_];
-      if (has_happened && event.wall < looks_.size()) looks_[event.wall].is_cracked = true;
+      if (has_happened && event.wall < scene_.recording.walls.size()) {
+        looks_[event.wall].is_cracked = true;
+      }
     }
     for (const StripPart& part : scene_.parts) add_part(part);
     for (const RecordedProjectile& projectile : scene_.recording.projectiles) add_ball(projectile);
     if (scene_.params.has_ground) draw_shadows();
-    const std::vector<std::uint32_t> order = painters_order(solids_);
+    const std::vector<std::uint32_t> order = find_order();
     for (std::size_t i = 0; i < order.size();) {
       std::size_t end = i + 1;
       while (end < order.size() && continues(order[i], order[end])) ++end;
@@ -89,7 +95,20 @@ class Picture {
 
  private:
   const ChunkPlace& place(const StripPart& part) const { return places_[part.wall][part.chunk]; }
+  bool is_of_building(const StripPart& part) const {
+    return part.wall == scene_.recording.walls.size();
+  }
+  bool is_of_standing_wall(const StripPart& part) const {
+    return !is_of_building(part) && place(part).track == kNoTrack;
+  }
+  const Look& look(const StripPart& part) const {
+    return looks_[is_of_building(part) ? part.wall + part.chunk : part.wall];
+  }
+  std::string_view closed(const StripPart& part) const;
+  void add_building();
   std::uint32_t body_of(const StripPart& part);
+  std::vector<std::uint32_t> find_order();
+  void divide(std::vector<std::uint32_t> cut);
   void add_part(const StripPart& part);
   void add_ball(const RecordedProjectile& recorded);
   bool put_on_screen(StripSolid& solid, Item& item);
@@ -99,11 +118,14 @@ class Picture {
   void draw_shadows();
   void draw_run(std::span<const std::uint32_t> run);
   void draw_sides(const StripSolid& solid, const Item& item);
+  void draw_edges(const StripPart& part, std::span<const Vec2, 4> quad);
   StripColour cap_colour(std::uint32_t i) const;
   std::string caps_of(std::span<const std::uint32_t> run) const;
   void draw_caps(std::span<const std::uint32_t> run);
   std::string lines_of(std::span<const std::uint32_t> run, bool are_open) const;
   void draw_glass_caps(std::span<const std::uint32_t> run);
+  void draw_end(std::uint32_t i, int end);
+  void draw_ends(std::uint32_t i) { draw_end(i, 0), draw_end(i, 1); }
   void draw_ball(const Item& item);
   std::vector<Vec2> cap_of(const Item& item) const;
 
@@ -111,14 +133,32 @@ class Picture {
   std::uint32_t step_;
   StripPaper& out_;
   std::vector<std::vector<ChunkPlace>> places_;
-  std::vector<Look> looks_;
+  std::vector<Look> looks_;  // of the walls, then of the building's parts
+  std::vector<std::array<EndLoad, 2>> loads_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> bodies_;
+  std::deque<StripPart> divided_;  // solids and items refer to them
   std::vector<StripSolid> solids_;
   std::vector<Item> items_;
 };
 
+// A stroke in a face's own colour, so that nothing shines through where it meets the next one.
+std::string_view Picture::closed(const StripPart& part) const {
+  return is_of_standing_wall(part) ? R"(" stroke-opacity="1" stroke-width="22)"
+                                   : R"(" stroke-opacity="1)";
+}
+
+void Picture::add_building() {
+  const Recording& recording = scene_.recording;
+  std::vector<ChunkPlace>& places = places_.emplace_back();
+  for (const RecordedPart& part : recording.parts) {
+    places.push_back({pose_of(recording, part, step_), part.track});
+    looks_.push_back(strip_look(part.material));
+  }
+  loads_ = end_loads(recording, recording.times[step_]);
+}
+
 std::uint32_t Picture::body_of(const StripPart& part) {
-  const std::pair key(part.wall, place(part).track);
+  const std::pair key(part.wall, is_of_building(part) ? part.chunk : place(part).track);
   return bodies_.try_emplace(key, static_cast<std::uint32_t>(bodies_.size())).first->second;
 }
 
@@ -144,12 +184,14 @@ bool is_in_picture(const Box& box) {
 }
 
 void Picture::add_part(const StripPart& part) {
+  const Recording& recording = scene_.recording;
+  if (is_of_building(part) && recording.parts[part.chunk].removed <= recording.times[step_]) return;
   StripSolid solid;
   Item item;
   item.part = &part;
   solid.outline = part.outline;
-  solid.half = 0.5 * scene_.recording.walls[part.wall].asset.wall.thickness;
-  solid.pose = place(part).pose;
+  solid.half = part.half;
+  solid.pose = place(part).pose * Pose{{0, 0, part.middle}, {}};
   solid.eye = inverse(solid.pose) * scene_.camera.eye;
   solid.body = body_of(part);
   for (const double z : {-solid.half, solid.half}) {
@@ -157,7 +199,9 @@ void Picture::add_part(const StripPart& part) {
   }
   if (!put_on_screen(solid, item)) return;
   solid.silhouette = convex_hull(item.picture);
-  item.cap = solid.eye.z > solid.half ? 1 : solid.eye.z < -solid.half ? -1 : 0;
+  const bool sees_front = part.has_front && solid.eye.z > solid.half;
+  const bool sees_back = part.has_back && solid.eye.z < -solid.half;
+  item.cap = sees_front ? 1 : sees_back ? -1 : 0;
   bool has_side = false;
   for (std::size_t i = 0; i < part.across.size(); ++i) {
     const std::uint32_t beyond = part.across[i];
@@ -203,6 +247,38 @@ bool Picture::continues(std::uint32_t a, std::uint32_t b) const {
   return solids_[a].is_flat && solids_[b].is_flat && solids_[a].body == solids_[b].body;
 }
 
+// --- order
+
+// Where a building's parts lie in a ring, each hiding the next, they are divided until they do not.
+std::vector<std::uint32_t> Picture::find_order() {
+  if (scene_.recording.parts.empty()) return painters_order(solids_);
+  for (int round = 0;; ++round) {
+    std::vector<std::uint32_t> cut;
+    std::vector<std::uint32_t> order = painters_order(solids_, &cut);
+    std::erase_if(cut, [this](std::uint32_t i) {
+      const StripPart* part = items_[i].part;
+      return !part || !is_of_building(*part);
+    });
+    if (cut.empty() || round == kMostDivisions) return order;
+    divide(std::move(cut));
+  }
+}
+
+void Picture::divide(std::vector<std::uint32_t> cut) {
+  std::ranges::sort(cut);
+  std::vector<const StripPart*> halves;
+  for (const std::uint32_t i : cut) {
+    for (StripPart& half : halves_of(*items_[i].part)) {
+      halves.push_back(&divided_.emplace_back(std::move(half)));
+    }
+  }
+  for (const std::uint32_t i : cut | std::views::reverse) {
+    solids_.erase(solids_.begin() + i);
+    items_.erase(items_.begin() + i);
+  }
+  for (const StripPart* half : halves) add_part(*half);
+}
+
 // --- shadows
 
 // Points around a sphere's outline as the light sees it.
@@ -245,7 +321,7 @@ void Picture::draw_shadows() {
     bool any = false;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
       const StripPart* part = items_[i].part;
-      if ((part && looks_[part->wall].is_glass) != of_glass) continue;
+      if ((part && look(*part).is_glass) != of_glass) continue;
       const std::vector<Vec2> outline = shadow_of(i);
       if (outline.empty()) continue;
       if (!any) {
@@ -271,7 +347,7 @@ std::vector<Vec2> Picture::cap_of(const Item& item) const {
 }
 
 void Picture::draw_sides(const StripSolid& solid, const Item& item) {
-  const Look& look = looks_[item.part->wall];
+  const Look& look = this->look(*item.part);
   const std::size_t count = solid.outline.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (!item.open[i] || !faces_eye(solid, i)) continue;
@@ -282,22 +358,38 @@ void Picture::draw_sides(const StripSolid& solid, const Item& item) {
     const bool is_border = item.part->across[i] == StripPart::kBorder;
     const StripColour colour =
         shaded(is_border ? look.outer : look.inner, normal, scene_.camera.light);
+    const bool is_divided = !item.part->has_back || !item.part->has_front;
     out_.text("<path fill=\"").colour(colour);
     // No lines across the narrow sides of a standing wall.
-    if (is_border && place(*item.part).track == kNoTrack) {
-      out_.text("\" stroke=\"").colour(colour).text(closed(place(*item.part)));
+    if (is_divided || (is_border && is_of_standing_wall(*item.part))) {
+      out_.text("\" stroke=\"").colour(colour).text(closed(*item.part));
     }
     out_.text(look.is_glass ? R"(" fill-opacity=".7" d=")" : R"(" d=")");
     const Vec2 quad[] = {item.picture[i], item.picture[next], item.picture[count + next],
                          item.picture[count + i]};
     out_.line(quad, true);
     out_.text("\"/>");
+    if (is_divided) draw_edges(*item.part, quad);
   }
+}
+
+// Edges of a side of a part that was divided across its length: not those where it was.
+void Picture::draw_edges(const StripPart& part, std::span<const Vec2, 4> quad) {
+  std::vector<Vec2> line{quad[2], quad[1], quad[0], quad[3]};
+  if (part.has_front) std::ranges::rotate(line, line.begin() + 2);
+  out_.text("<path fill=\"none\" d=\"");
+  if (part.has_back || part.has_front) {
+    out_.line(line, false);
+  } else {
+    out_.line(std::span(line).first(2), false);
+    out_.line(std::span(line).last(2), false);
+  }
+  out_.text("\"/>");
 }
 
 StripColour Picture::cap_colour(std::uint32_t i) const {
   const Vec3 normal = rotate(solids_[i].pose.rotation, {0, 0, items_[i].cap > 0 ? 1.0 : -1.0});
-  return shaded(looks_[items_[i].part->wall].outer, normal, scene_.camera.light);
+  return shaded(look(*items_[i].part).outer, normal, scene_.camera.light);
 }
 
 std::string Picture::caps_of(std::span<const std::uint32_t> run) const {
@@ -340,7 +432,7 @@ void Picture::draw_caps(std::span<const std::uint32_t> run) {
   const StripColour colour = cap_colour(run[0]);
   out_.text("<path fill=\"").colour(colour);
   const bool is_whole = run.size() == 1 && std::ranges::all_of(first.open, std::identity());
-  if (!is_whole) out_.text("\" stroke=\"").colour(colour).text(closed(place(*first.part)));
+  if (!is_whole) out_.text("\" stroke=\"").colour(colour).text(closed(*first.part));
   out_.text("\" d=\"").text(caps_of(run)).text("\"/>");
   if (is_whole) return;
   const std::string open = lines_of(run, true);
@@ -350,7 +442,7 @@ void Picture::draw_caps(std::span<const std::uint32_t> run) {
 // Without antialiasing: neighbours that are seen through would show a line where they meet.
 void Picture::draw_glass_caps(std::span<const std::uint32_t> run) {
   const StripPart& part = *items_[run[0]].part;
-  if (place(part).track == kNoTrack) {
+  if (is_of_standing_wall(part)) {
     out_.text("<path class=\"pane\" fill=\"url(#glass").integer(part.wall).text(")");
   } else {
     out_.text("<path class=\"shard\" fill=\"").colour(cap_colour(run[0]));
@@ -361,8 +453,34 @@ void Picture::draw_glass_caps(std::span<const std::uint32_t> run) {
     out_.text("<path class=\"").text(shape).text("\" d=\"").text(lines).text("\"/>");
     out_.text("<path class=\"glint\" d=\"").text(lines).text("\"/>");
   };
-  if (looks_[part.wall].is_cracked) draw("crack", lines_of(run, false));
+  if (look(part).is_cracked) draw("crack", lines_of(run, false));
   draw("edge", lines_of(run, true));
+}
+
+// Light over the seen faces of a member's end: its joints' utilisation.
+void Picture::draw_end(std::uint32_t i, int end) {
+  const StripSolid& solid = solids_[i];
+  const StripPart& part = *items_[i].part;
+  const StressLight light = light_of(loads_[part.chunk][static_cast<std::size_t>(end)]);
+  if (light.strength < kFaintest) return;
+  const double tip = scene_.recording.parts[part.chunk].half_length;
+  const double from = std::max(-solid.half, (end == 0 ? -tip : tip - part.end) - part.middle);
+  const double to = std::min(solid.half, (end == 0 ? part.end - tip : tip) - part.middle);
+  if (from >= to) return;
+  out_.text("<path fill=\"").colour(light.colour).text("\" opacity=\"");
+  out_.number(std::floor(100 * light.strength + 0.5) / 100).text("\" d=\"");
+  const auto project = [&](Vec2 p, double z) {
+    return scene_.camera.project(scene_.camera.see(solid.pose * Vec3{p.x, p.y, z}));
+  };
+  const std::size_t count = solid.outline.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!faces_eye(solid, k)) continue;
+    const Vec2 a = solid.outline[k], b = solid.outline[k + 1 == count ? 0 : k + 1];
+    const Vec2 quad[] = {project(a, from), project(b, from), project(b, to), project(a, to)};
+    out_.line(quad, true);
+  }
+  if (items_[i].cap == (end == 0 ? -1 : 1)) out_.line(cap_of(items_[i]), true);
+  out_.text("\"/>");
 }
 
 void Picture::draw_ball(const Item& item) {
@@ -379,12 +497,13 @@ void Picture::draw_run(std::span<const std::uint32_t> run) {
   if (!is_seen) return;
   if (run.size() == 1) draw_sides(solids_[run[0]], first);
   if (first.cap != 0) {
-    if (looks_[first.part->wall].is_glass) {
+    if (look(*first.part).is_glass) {
       draw_glass_caps(run);
     } else {
       draw_caps(run);
     }
   }
+  if (first.part->end > 0) draw_ends(run[0]);
   out_.text("\n");
 }
 

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string_view>
 #include <utility>
 
 #include "fracture/chunk_mesh.hpp"
+#include "io/strip_building.hpp"
 #include "io/wall_view.hpp"
 
 namespace sunder {
@@ -105,7 +107,7 @@ std::vector<StripPart> strip_parts(const Recording& recording) {
         }
       }
       for (const std::vector<std::uint32_t>& corners : convex_parts(asset, c)) {
-        StripPart& part = parts.emplace_back(StripPart{w, c, {}, {}});
+        StripPart& part = parts.emplace_back(StripPart{w, c, {}, {}, 0.5 * asset.wall.thickness});
         for (std::size_t i = 0; i < corners.size(); ++i) {
           part.outline.push_back(pattern.vertices[corners[i]]);
           const auto edge = edges.find({corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]});
@@ -116,6 +118,7 @@ std::vector<StripPart> strip_parts(const Recording& recording) {
       }
     }
   }
+  std::ranges::move(building_parts(recording), std::back_inserter(parts));
   return parts;
 }
 

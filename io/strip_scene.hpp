@@ -12,12 +12,17 @@
 
 namespace sunder {
 
-/// A convex part of a chunk; a convex chunk is its own only part.
+/// A convex part of a chunk; a convex chunk is its own only part. A building is one more wall,
+/// after the others: its members, slabs and walls are the chunks.
 struct StripPart {
   static constexpr std::uint32_t kBorder = UINT32_MAX, kInside = UINT32_MAX - 1;
   std::uint32_t wall = 0, chunk = 0;
   std::vector<Vec2> outline;          ///< m, wall frame, counter-clockwise
   std::vector<std::uint32_t> across;  ///< per edge: a chunk, kBorder, or kInside of its own chunk
+  double half = 0;                    ///< extruded over z = middle ± half, m
+  double end = 0;                     ///< length of a member's ends that show stress, m
+  double middle = 0;
+  bool has_back = true, has_front = true;  ///< caps; not where it was divided
 };
 std::vector<StripPart> strip_parts(const Recording& recording);
 

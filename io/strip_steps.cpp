@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "io/strip_building.hpp"
 #include "meshing/elementary.hpp"
 
 namespace sunder {
@@ -16,13 +17,6 @@ constexpr double kLeast = 0.06;     // s, when the last of several is
 constexpr double kTogether = 0.08;  // s, hits closer than this share a picture
 constexpr double kSettle = 0.5;     // s, shown after the last hit even if nothing moves any more
 constexpr double kAtRest = 0.95;    // share of the moving chunks that rest at the last picture
-
-// The first step at or after a time, or the last one.
-std::uint32_t step_at(const Recording& recording, double time) {
-  const auto next = std::ranges::lower_bound(recording.times, time - 1e-12);
-  return static_cast<std::uint32_t>(std::min(next, recording.times.end() - 1) -
-                                    recording.times.begin());
-}
 
 // Steps at which the first chunk begins to move and nearly all have come to rest; empty if none
 // moves.
@@ -144,11 +138,19 @@ std::vector<std::uint32_t> eventful_steps(const Recording& recording, std::vecto
 
 }  // namespace
 
+std::uint32_t step_at(const Recording& recording, double time) {
+  const auto next = std::ranges::lower_bound(recording.times, time - 1e-12);
+  return static_cast<std::uint32_t>(std::min(next, recording.times.end() - 1) -
+                                    recording.times.begin());
+}
+
 std::vector<std::uint32_t> strip_steps(const Recording& recording, int frames) {
   const TimeRange moving = moving_steps(recording);
   const std::vector<Act> acts = find_acts(recording, moving);
-  std::vector<std::uint32_t> steps = acts.empty() ? even_steps(recording, frames)
-                                                  : eventful_steps(recording, acts, moving, frames);
+  std::vector<std::uint32_t> steps = !recording.parts.empty() ? building_steps(recording, frames)
+                                     : acts.empty()
+                                         ? even_steps(recording, frames)
+                                         : eventful_steps(recording, acts, moving, frames);
   std::ranges::sort(steps);
   const auto repeated = std::ranges::unique(steps);
   steps.erase(repeated.begin(), repeated.end());

@@ -13,6 +13,10 @@ namespace sunder {
 /// apart share one, and some are left out where frames are few); the others at intervals that grow
 /// in proportion after the hit before; at the end the one at which nearly all chunks rest. A single
 /// picture is that of the first hit. Where nothing breaks or moves, evenly over the recording.
+/// Those of a building: see building_steps.
 std::vector<std::uint32_t> strip_steps(const Recording& recording, int frames);
+
+/// The first step at or after a time (s), or the last one.
+std::uint32_t step_at(const Recording& recording, double time);
 
 }  // namespace sunder

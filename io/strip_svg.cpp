@@ -11,12 +11,15 @@
 #include "io/strip_picture.hpp"
 #include "io/strip_scene.hpp"
 #include "io/strip_steps.hpp"
+#include "io/strip_stress.hpp"
 
 namespace sunder {
 namespace {
 
 constexpr std::size_t kColumns = 3;
-constexpr double kGap = 100;  // between pictures, picture units
+constexpr double kGap = 100;            // between pictures, picture units
+constexpr double kCaptionHeight = 520;  // below a building's picture
+constexpr double kLegendHeight = 1080;
 // Cracks and edges of glass: a dark line with a bright one in it.
 constexpr std::string_view kGlassStyle =
     ".pane{stroke:none;shape-rendering:crispEdges}"
@@ -48,33 +51,114 @@ std::vector<std::string> labels_of(const Recording& recording,
   return labels;
 }
 
+// A member's colours, explained below the pictures: drawn 9300 wide, shrunk where that is too much.
+void draw_legend(double left, double top, double width, StripPaper& paper) {
+  struct Entry {
+    EndLoad load;
+    std::string_view words;
+    double left;
+  };
+  constexpr Entry kEntries[] = {{{1, 0, false}, "force", 0},
+                                {{0, 1, false}, "torque", 2000},
+                                {{1, 1, false}, "both", 4200},
+                                {{0, 0, true}, "failed joint", 6000}};
+  paper.text("<g class=\"legend\" transform=\"translate(").number(left).text(" ").number(top);
+  paper.text(") scale(").number(std::min(1.0, width / 9300));
+  paper.text(")\" font-size=\"420\" font-family=\"Helvetica, Arial, sans-serif\" ");
+  paper.text("fill=\"#20262c\">\n");
+  for (const Entry& entry : kEntries) {
+    paper.text("<rect x=\"").number(entry.left).text("\" width=\"420\" height=\"420\" ");
+    paper.text("rx=\"60\" fill=\"").colour(light_of(entry.load).colour);
+    paper.text("\"/><text x=\"").number(entry.left + 560).text("\" y=\"355\">");
+    paper.text(entry.words).text("</text>\n");
+  }
+  paper.text("<text y=\"900\" font-size=\"340\" fill=\"#5a626a\">");
+  paper.text("at the ends of members, stronger the nearer to failure</text>\n</g>\n");
+}
+
+// A building's, below its pictures: the time and how many joints have broken.
+std::vector<std::string> captions_of(const Recording& recording,
+                                     const std::vector<std::uint32_t>& steps) {
+  std::vector<std::string> captions = labels_of(recording, steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::size_t broken = broken_joints(recording, recording.times[steps[i]]);
+    captions[i] += ", " + std::to_string(broken) + (broken == 1 ? " joint" : " joints");
+    captions[i] += " broken";
+  }
+  return captions;
+}
+
+// How pictures are laid out.
+struct Page {
+  std::size_t columns = 0, rows = 0;
+  double picture = kStripWidth;  // width of one
+  bool is_of_building = false;   // with captions below the pictures, and a legend
+
+  double left(std::size_t i) const {
+    return static_cast<double>(i % columns) * (picture + kGap) + kGap;
+  }
+  double top(std::size_t i) const { return row_top(i / columns); }
+  double width() const { return static_cast<double>(columns) * (picture + kGap) + kGap; }
+  double height() const { return row_top(rows) + (is_of_building ? kLegendHeight : 0); }
+  double row_top(std::size_t row) const {
+    const double caption = is_of_building ? kCaptionHeight : 0;
+    return static_cast<double>(row) * (kStripHeight + caption + kGap) + kGap;
+  }
+};
+
+Page page_of(const StripScene& scene, std::size_t pictures) {
+  const std::size_t columns = std::min(kColumns, pictures);
+  const std::size_t rows = (pictures + columns - 1) / columns;
+  return {columns, rows, scene.camera.width, !scene.recording.parts.empty()};
+}
+
+// In a corner of a wall's picture.
+void draw_label(const std::string& label, StripPaper& paper) {
+  paper.text("<rect x=\"160\" y=\"5680\" width=\"1500\" height=\"560\" rx=\"120\" ");
+  paper.text("fill=\"#fff\" fill-opacity=\".72\"/>\n<text x=\"910\" y=\"6095\" ");
+  paper.text("font-size=\"380\" font-weight=\"600\" text-anchor=\"middle\" ");
+  paper.text("font-family=\"Helvetica, Arial, sans-serif\" fill=\"#20262c\">");
+  paper.text(label).text("</text>\n");
+}
+
+void draw_captions(const Page& page, const std::vector<std::string>& captions, StripPaper& paper) {
+  paper.text("<g font-size=\"380\" font-weight=\"600\" ");
+  paper.text("font-family=\"Helvetica, Arial, sans-serif\" fill=\"#20262c\">\n");
+  for (std::size_t i = 0; i < captions.size(); ++i) {
+    paper.text("<text x=\"").number(page.left(i) + 60).text("\" y=\"");
+    paper.number(page.top(i) + kStripHeight + 410).text("\">").text(captions[i]);
+    paper.text("</text>\n");
+  }
+  paper.text("</g>\n");
+}
+
 void draw_page(const StripScene& scene, const std::vector<std::uint32_t>& steps,
                StripPaper& paper) {
-  const std::size_t columns = std::min(kColumns, steps.size());
-  const std::size_t rows = (steps.size() + columns - 1) / columns;
-  const auto extent = [](std::size_t count, double size) {
-    return static_cast<double>(count) * (size + kGap) + kGap;
-  };
-  const double width = extent(columns, kStripWidth), height = extent(rows, kStripHeight);
+  const Page page = page_of(scene, steps.size());
+  const double width = page.width(), height = page.height();
+  const double scale = kStripWidth / page.picture / 20;  // all strips are as wide
+  const double edge = 0.5 * (kStripWidth - page.picture);
   paper.text("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ").number(width);
-  paper.text(" ").number(height).text("\" width=\"").number(width / 20);
-  paper.text("\" height=\"").number(height / 20).text("\">\n");
+  paper.text(" ").number(height).text("\" width=\"").number(width * scale);
+  paper.text("\" height=\"").number(height * scale).text("\">\n");
   paper.text("<style>").text(kGlassStyle).text("</style>\n<defs>\n");
   draw_strip_defs(scene, paper);
   paper.text("</defs>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
   const std::vector<std::string> labels = labels_of(scene.recording, steps);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    paper.text("<svg x=\"").number(extent(i % columns, kStripWidth));
-    paper.text("\" y=\"").number(extent(i / columns, kStripHeight));
-    paper.text("\" width=\"10000\" height=\"6400\" viewBox=\"0 0 10000 6400\">\n");
+    paper.text("<svg x=\"").number(page.left(i)).text("\" y=\"").number(page.top(i));
+    paper.text("\" width=\"").number(page.picture).text("\" height=\"6400\" viewBox=\"");
+    paper.number(edge).text(" 0 ").number(page.picture).text(" 6400\">\n");
     paper.text("<use href=\"#scenery\"/>\n<g stroke=\"#14181d\" stroke-opacity=\".42\" ");
     paper.text("stroke-width=\"7\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n");
     draw_strip_picture(scene, steps[i], paper);
-    paper.text("</g>\n<rect x=\"160\" y=\"5680\" width=\"1500\" height=\"560\" rx=\"120\" ");
-    paper.text("fill=\"#fff\" fill-opacity=\".72\"/>\n<text x=\"910\" y=\"6095\" ");
-    paper.text("font-size=\"380\" font-weight=\"600\" text-anchor=\"middle\" ");
-    paper.text("font-family=\"Helvetica, Arial, sans-serif\" fill=\"#20262c\">");
-    paper.text(labels[i]).text("</text>\n</svg>\n");
+    paper.text("</g>\n");
+    if (!page.is_of_building) draw_label(labels[i], paper);
+    paper.text("</svg>\n");
+  }
+  if (page.is_of_building) {
+    draw_captions(page, captions_of(scene.recording, steps), paper);
+    draw_legend(page.left(0) + 60, height - kLegendHeight + 20, width - 2 * kGap - 60, paper);
   }
   paper.text("</svg>\n");
 }

@@ -14,7 +14,8 @@ struct StripParams {
 };
 
 /// Pictures of a recording, side by side in rows of three, as SVG: in perspective from one place,
-/// with the time below each. Same recording, same bytes. The recording is valid.
+/// with the time below each. Those of a building show the stress of its members' ends, with a
+/// legend below. Same recording, same bytes. The recording is valid.
 std::string draw_strip(const Recording& recording, const StripParams& params = {});
 
 }  // namespace sunder

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sim/impact_run.hpp"
+#include "sim/step_times.hpp"
 
 namespace sunder {
 namespace {
@@ -49,13 +50,6 @@ WorldParams world_params(const SimulationParams& simulation) {
   world.ground_height = simulation.ground_height;
   world.sleep = simulation.sleep;
   return world;
-}
-
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + at);
-  return values[static_cast<std::size_t>(at)];
 }
 
 }  // namespace

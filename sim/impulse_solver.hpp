@@ -18,10 +18,15 @@ struct SolverTask {
   std::vector<Meeting> meetings;
   Vec3 gravity;
   double dt = 0;
+  bool warm_joints = true;      ///< joints start from their last impulses
+  std::uint64_t fallbacks = 0;  ///< solves that a direct method gave up
 };
 
 /// Bullet's solver with a friction cone instead of a box, sweeps there and back, restitution after
 /// the solve without it, and overlaps removed last, by what remains of them at the end of the step.
-std::unique_ptr<btSequentialImpulseConstraintSolver> impulse_solver(SolverTask& task);
+/// Joints as the method says; the direct ones (Dantzig, Lemke) take contacts and their friction,
+/// as a box, into the same problem, and take O(rows³).
+std::unique_ptr<btSequentialImpulseConstraintSolver> impulse_solver(SolverTask& task,
+                                                                    JointSolver method);
 
 }  // namespace sunder

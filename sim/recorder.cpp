@@ -45,6 +45,11 @@ void Recorder::add_event(const BreakEvent& event) {
   mix(std::uint64_t{event.chunks_freed});
 }
 
+void Recorder::add_broken_joint(std::uint32_t joint, double time) {
+  mix(std::uint64_t{joint});
+  mix(time);
+}
+
 void Recorder::mix(double value) {
   mix(std::bit_cast<std::uint64_t>(value));
 }

@@ -17,6 +17,7 @@ class Recorder {
   void add_time(double time);
   void add_pose(std::uint32_t track, const Pose& pose);
   void add_event(const BreakEvent& event);
+  void add_broken_joint(std::uint32_t joint, double time);
 
   bool is_empty(std::uint32_t track) const { return recording_.tracks[track].poses.empty(); }
   std::uint32_t parent(std::uint32_t track) const { return recording_.tracks[track].parent; }

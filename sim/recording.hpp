@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "fracture/asset.hpp"
+#include "meshing/region.hpp"
 #include "sim/pose.hpp"
 #include "sim/projectile.hpp"
 
@@ -44,6 +47,36 @@ struct RecordedProjectile {
   std::uint32_t track = kNoTrack;  ///< its first pose is at projectile.time; before, it is not there
 };
 
+/// A member, slab or panel of a building: an outline in the XY plane of its own frame, extruded over
+/// z = ±half_length.
+struct RecordedPart {
+  std::string name;
+  Region outline;               ///< m
+  double half_length = 0;       ///< m
+  std::string material;         ///< "steel", "concrete-c30" …
+  double mass = 0;              ///< kg
+  Pose standing;                ///< of its frame before the track
+  std::uint32_t track = kNoTrack;
+  bool has_ends = false;        ///< a member: its ends show the stress of its joints
+  double removed = std::numeric_limits<double>::infinity();  ///< s: taken away, not there any more
+};
+
+/// A joint between parts. `end`: 0 at z = -half_length of the part, 1 at the other end, 2 in between.
+struct RecordedJoint {
+  std::string name;
+  std::uint32_t part_a = 0, part_b = kNoTrack;  ///< kNoTrack: the ground
+  std::uint8_t end_a = 2, end_b = 2;
+  Vec3 point;                                   ///< where it stood, world
+  double broken = std::numeric_limits<double>::infinity();  ///< s
+};
+
+/// Load of a joint at a sampling time: the one of largest utilisation since the time before. Axes of
+/// the joint: x along the member, y and z those of its section (see FrameJoint).
+struct JointSample {
+  std::array<float, 3> force{}, torque{};  ///< N, N m
+  float force_utilisation = 0, torque_utilisation = 0, utilisation = 0;
+};
+
 /// Everything that moved, step by step.
 struct Recording {
   std::vector<double> times;  ///< of every step, s, ascending; times[0] = 0: everything stands
@@ -51,6 +84,10 @@ struct Recording {
   std::vector<RecordedWall> walls;
   std::vector<RecordedProjectile> projectiles;
   std::vector<BreakEvent> events;
+  std::vector<RecordedPart> parts;
+  std::vector<RecordedJoint> joints;
+  std::vector<double> sample_times;  ///< of joints' loads, s, ascending
+  std::vector<JointSample> samples;  ///< [time][joint]; zero from the time after its break on
 };
 
 /// Range of times in which something moves along its track and the tracks before it; for kNoTrack

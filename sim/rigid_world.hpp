@@ -8,6 +8,7 @@
 
 #include "meshing/tri_mesh.hpp"
 #include "sim/pose.hpp"
+#include "sim/spin.hpp"
 
 namespace sunder {
 
@@ -22,9 +23,17 @@ struct Surface {
   double restitution = 0.1;
 };
 
+/// A joint between bodies: counts up, never used twice.
+using JointId = std::uint32_t;
+
+/// How joints are solved; contacts always by sequential impulses where the choice is free.
+enum class JointSolver : std::uint8_t { sequential_impulse, nncg, dantzig, lemke };
+
 struct WorldParams {
   double gravity = 9.81;       ///< m/s², along -Y
   int iterations = 20;         ///< of the sequential-impulse solver
+  JointSolver joint_solver = JointSolver::sequential_impulse;
+  bool warm_start = true;      ///< joints start from the impulses of the last step
   bool has_ground = true;      ///< the half-space y <= ground_height
   double ground_height = 0;    ///< m
   Surface ground = {0.6, 0.1};
@@ -53,6 +62,22 @@ struct BodyParams {
   std::uint64_t order = 0;
 };
 
+/// A joint: the bodies keep their relative pose (six equations).
+struct JointParams {
+  BodyId a = kNoBody;
+  BodyId b = kGround;  ///< kGround: the world, also when there is no ground to fall on
+  Vec3 point;          ///< world
+  Axes axes;           ///< world; turn with a. Loads are told in them
+  bool rigid = true;   ///< false: the point only (three equations); the bodies turn freely about it
+};
+
+/// What a joint gave body a in the last step, over the step's length.
+struct JointReaction {
+  Vec3 force;   ///< on a, in the joint's axes, N
+  Vec3 torque;  ///< on a, about the joint's point (not a body's centre), in its axes, N m
+  double gap = 0;  ///< between the two bodies' ideas of the point, m
+};
+
 /// One contact point of the last step.
 struct Contact {
   BodyId a = kNoBody, b = kNoBody;  ///< order(a) < order(b)
@@ -70,6 +95,8 @@ struct Contact {
 struct StepWork {
   double contact = 0;   ///< by normal impulses
   double friction = 0;  ///< by tangential impulses
+  double driven = 0;    ///< by what set_gravity adds to -gravity on Y: given to the bodies, > 0
+  double joint = 0;     ///< by joints: what shocks and the correction of drift take (or add, < 0)
 };
 
 /// Rigid bodies with contact, friction, restitution and sleep, by sequential impulses in double
@@ -83,7 +110,9 @@ struct StepWork {
 ///  - overlap is pushed out at 1 m/s at most, without touching a velocity;
 ///  - friction is one vector in Coulomb's cone, against the sliding;
 ///  - contacts are found and solved in an order of our own keys;
-///  - no function of the C library whose bits depend on the processor.
+///  - no function of the C library whose bits depend on the processor;
+///  - joints are six (or three) of Bullet's rows each, along the joint's own axes, so that their impulses are
+///    the load at the joint; Baumgarte's correction of drift with Bullet's share of 0.2 a step.
 /// Not thread-safe; a world per thread is fine.
 class RigidWorld {
  public:
@@ -115,6 +144,21 @@ class RigidWorld {
   /// For so long the body meets spheres and the ground only: what leaves a hole at speed crushes the
   /// edges that would jam rigid ones.
   void exempt(BodyId body, double seconds);
+
+  /// Joined bodies do not collide with each other, nor those that are two joints apart.
+  JointId add_joint(const JointParams& params);
+  void remove_joint(JointId joint);
+  JointReaction joint_reaction(JointId joint) const;
+  /// The two bodies never touch from now on (a post that snapped bears no more).
+  void separate(BodyId a, BodyId b);
+  /// The same body heavier or lighter, inertia in proportion, velocities kept.
+  void set_mass(BodyId body, double mass);
+  /// Acceleration of free bodies: -gravity on Y, or with the ground's own acceleration taken off.
+  void set_gravity(Vec3 gravity);
+  /// From the next step on.
+  void set_iterations(int iterations);
+  /// Steps in which a direct solver of joints gave up and iterated instead.
+  std::uint64_t solver_fallbacks() const;
   /// Axis-aligned box, world.
   struct Bounds {
     Vec3 low, high;

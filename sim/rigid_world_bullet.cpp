@@ -15,6 +15,7 @@
 
 #include "sim/impulse_solver.hpp"
 #include "sim/principal_axes.hpp"
+#include "sim/rigid_joint.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/solid.hpp"
 #include "sim/spin.hpp"
@@ -32,6 +33,8 @@ constexpr double kNeighbour = 2e-3;  // m; removing a body wakes what is nearer
 constexpr double kRecall = 0.03;     // m, between a point and what it was a step ago
 constexpr double kSleepAfter = 0.5;  // s
 constexpr double kEnergyRounding = 1e-9;  // of the work of an island's impulses
+constexpr double kCompliance = 1e-9;  // m/s per N s: direct solvers need it, joints are redundant
+constexpr double kJointedShare = 0.1;  // of the sleeping speeds: joined bodies creep
 constexpr double kWakeShare = 0.4;   // of the sleeping speeds: a neighbour this fast wakes
 
 btVector3 bullet(Vec3 v) {
@@ -82,7 +85,8 @@ struct WorldParts {
   btNullPairCache no_pairs;
   btDbvtBroadphase broadphase{&no_pairs};
   SolverTask task;
-  std::unique_ptr<btSequentialImpulseConstraintSolver> solver = impulse_solver(task);
+  std::unique_ptr<btSequentialImpulseConstraintSolver> solver;
+  explicit WorldParts(JointSolver method) : solver(impulse_solver(task, method)) {}
 };
 
 /// Bullet's step, with each part that loops over all objects replaced by one that loops over those
@@ -90,7 +94,8 @@ struct WorldParts {
 class World final : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   explicit World(const WorldParams& world_params)
-      : btDiscreteDynamicsWorld(&toucher.dispatcher(), &broadphase, solver.get(), &configuration),
+      : WorldParts(world_params.joint_solver),
+        btDiscreteDynamicsWorld(&toucher.dispatcher(), &broadphase, solver.get(), &configuration),
         params(world_params),
         gravity{0, -world_params.gravity, 0} {
     broadphase.m_deferedcollide = true;  // pairs are looked for by us
@@ -100,7 +105,10 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
     info.m_numIterations = params.iterations;
     info.m_splitImpulse = 1;
     info.m_splitImpulsePenetrationThreshold = BT_LARGE_FLOAT;
-    info.m_globalCfm = 0;
+    const bool is_direct = params.joint_solver == JointSolver::dantzig ||
+                           params.joint_solver == JointSolver::lemke;
+    info.m_globalCfm = is_direct ? kCompliance : 0;
+    task.warm_joints = params.warm_start;
     add_ground();
   }
   /// Bullet's own destructors would look at bodies that are gone.
@@ -116,6 +124,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
 
   WorldParams params;
   Vec3 gravity;
+  std::vector<std::unique_ptr<RigidJoint>> joints;  ///< by id; null: removed
   std::vector<std::unique_ptr<Body>> bodies;  ///< by id; null: removed
   std::vector<Body*> awake;                   ///< by rank
   std::uint32_t moving_count = 0;
@@ -130,8 +139,16 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   }
   BodyId insert(std::unique_ptr<Body> body);
   void remove(Body& body);
-  void wake(Body& body);  ///< appends to `awake`
-  void rank_last();
+  /// With all that is joined to it.
+  void wake(Body& body);
+  RigidJoint& joint(JointId id) const {
+    assert(id < joints.size() && joints[id] && "the joint exists");
+    return *joints[id];
+  }
+  using WorldParts::task;
+  void set_mass(Body& body, double mass);
+  JointId insert(std::unique_ptr<RigidJoint> joint);
+  void remove(RigidJoint& joint);
   void step(double dt);
 
  protected:
@@ -152,7 +169,13 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void add_ground();
   void put_into_bullet(Body& body);
   void set_box(Body& body);
+  void wake_alone(Body& body);  ///< appends to `awake`
+  void rank_last();
   void wake_around(Body& body);
+  void forget_near(Body& body);
+  bool passes(Body& a, const Body& b);
+  void unite(const Body& a, const Body& b);
+  void set_contact_times(const RigidJoint& joint);
   void put_to_sleep(Body& body);
   void begin(Body& body);
   void find_near(const WorldBox& box);
@@ -168,10 +191,13 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void recall(const Link& link, Meeting& meeting, btManifoldPoint& point) const;
   void give(Meeting& meeting, btManifoldPoint& point) const;
   std::uint32_t find_root(std::uint32_t slot);
-  void solve_island(std::span<const Link> links, btContactSolverInfo& info);
+  void solve_island(std::span<const Link> links, std::span<RigidJoint* const> joints,
+                    btContactSolverInfo& info);
   void keep_energy(std::span<const Link> links);
   void account();
   void account(const Meeting& meeting);
+  void account(const RigidJoint& joint);
+  Vec3 mean_velocity(const Body& body, Vec3 arm) const;
 
   double dt_ = 0, last_dt_ = 1;
   std::vector<Link> links_, old_links_;  ///< sorted by comes_before
@@ -179,6 +205,8 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::vector<std::uint32_t> root_;      ///< of the islands' union-find, by slot
   std::vector<btCollisionObject*> solved_bodies_;
   std::vector<btPersistentManifold*> solved_manifolds_;
+  std::vector<RigidJoint*> awake_joints_;  ///< of bodies that are awake; by island, then age
+  std::vector<btTypedConstraint*> solved_joints_;
   std::vector<PartTouch> touches_;
   std::vector<Body*> found_;
   btNodeStack stack_;
@@ -223,6 +251,8 @@ BodyId World::insert(std::unique_ptr<Body> body) {
 }
 
 void World::remove(Body& body) {
+  while (!body.joints.empty()) remove(*body.joints.back());
+  for (const Body* other : body.passes) std::erase(bodies[other->id]->passes, &body);
   wake_around(body);
   removeRigidBody(body.in_bullet.get());
   if (body.awake) std::erase(awake, &body);
@@ -241,13 +271,94 @@ void World::rank_last() {
   std::rotate(at, awake.end() - 1, awake.end());
 }
 
-void World::wake(Body& body) {
-  if (!body.moves) return;
+void World::set_mass(Body& body, double mass) {
+  wake(body);
+  std::sort(awake.begin(), awake.end(), by_rank);
+  const double ratio = mass / body.mass;
+  body.mass = mass;
+  for (double SymMat3::* each : {&SymMat3::xx, &SymMat3::yy, &SymMat3::zz, &SymMat3::xy,
+                                 &SymMat3::xz, &SymMat3::yz}) {
+    body.inertia.*each *= ratio;
+    body.inverse_inertia.*each /= ratio;
+  }
+  body.principal.moments = ratio * body.principal.moments;
+  body.in_bullet->setMassProps(mass, bullet(body.principal.moments));
+}
+
+void World::wake_alone(Body& body) {
   body.still_for = 0;
   if (body.awake) return;
   body.awake = true;
   body.in_bullet->setMassProps(body.mass, bullet(body.principal.moments));
   awake.push_back(&body);
+}
+
+void World::wake(Body& body) {
+  if (!body.moves) return;
+  if (body.awake || body.joints.empty()) return wake_alone(body);
+  std::vector<Body*> reached{&body};
+  wake_alone(body);
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const RigidJoint* joint : reached[i]->joints) {
+      Body& other = joint->a == reached[i] ? *joint->b : *joint->a;
+      if (!other.moves || other.awake) continue;
+      wake_alone(other);
+      reached.push_back(&other);
+    }
+  }
+}
+
+JointId World::insert(std::unique_ptr<RigidJoint> joint) {
+  for (Body* body : {joint->a, joint->b}) {
+    wake(*body);
+    body->joints.push_back(joint.get());
+    forget_near(*body);
+  }
+  std::sort(awake.begin(), awake.end(), by_rank);
+  joint->id = static_cast<JointId>(joints.size());
+  joint->corrects_apart = params.warm_start && getSolverInfo().m_globalCfm == 0;
+  joints.push_back(std::move(joint));
+  return joints.back()->id;
+}
+
+void World::remove(RigidJoint& joint) {
+  for (Body* body : {joint.a, joint.b}) {
+    wake(*body);
+    forget_near(*body);
+  }
+  std::sort(awake.begin(), awake.end(), by_rank);
+  for (Body* body : {joint.a, joint.b}) std::erase(body->joints, &joint);
+  joints[joint.id].reset();
+}
+
+/// What is near the body and its neighbours has to be found anew.
+void World::forget_near(Body& body) {
+  if (!body.moves) return;
+  body.near_is_known = false;
+  for (const RigidJoint* joint : body.joints) {
+    Body& other = joint->a == &body ? *joint->b : *joint->a;
+    if (other.moves) other.near_is_known = false;
+  }
+}
+
+/// Whether the two bodies never collide: joined, two joints apart by way of a moving body, or
+/// separated for good.
+bool World::passes(Body& a, const Body& b) {
+  if (a.joints.empty() && a.passes.empty()) return false;
+  if (std::find(a.passes.begin(), a.passes.end(), &b) != a.passes.end()) return true;
+  if (!a.near_is_known) {
+    a.near.clear();
+    for (const RigidJoint* joint : a.joints) {
+      const Body& other = joint->a == &a ? *joint->b : *joint->a;
+      a.near.push_back(&other);
+      if (!other.moves) continue;
+      for (const RigidJoint* next : other.joints)
+        a.near.push_back(next->a == &other ? next->b : next->a);
+    }
+    std::sort(a.near.begin(), a.near.end());
+    a.near_is_known = true;
+  }
+  return std::binary_search(a.near.begin(), a.near.end(), &b);
 }
 
 void World::wake_around(Body& body) {
@@ -260,8 +371,8 @@ void World::wake_around(Body& body) {
     toucher.find(body.solid, place(body), other->solid, place(*other), kNeighbour, {}, touches_);
     if (touches_.empty()) continue;
     wake(*other);
-    rank_last();
   }
+  std::sort(awake.begin(), awake.end(), by_rank);
 }
 
 /// What little it moved is lost to its support. The solver takes bodies without mass for fixed.
@@ -335,10 +446,12 @@ void World::performDiscreteCollisionDetection() {
     find_near(one.swept);
     for (Body* other : found_) {
       if (other == &one || (other->awake && other->slot < one.slot)) continue;
-      if (are_exempt(one, *other)) continue;
+      if (are_exempt(one, *other) || passes(one, *other)) continue;
       if (overlap(one.swept, other->swept)) meet(one, *other);
     }
-    if (params.has_ground && one.swept.low.y <= params.ground_height) meet(one, *bodies[kGround]);
+    Body& ground = *bodies[kGround];
+    if (params.has_ground && one.swept.low.y <= params.ground_height && !passes(one, ground))
+      meet(one, ground);
   }
   for (Body* one : awake) {
     one->slot = 0;
@@ -364,9 +477,12 @@ void World::meet(Body& one, Body& other) {
     return m.arrives || (m.gap < kTouch && !is_slow(one, kWakeShare));
   });
   if (!wakes) return;
+  const std::size_t first_woken = awake.size();
   wake(other);
-  begin(other);
-  other.slot = static_cast<std::uint32_t>(awake.size());
+  for (std::size_t i = first_woken; i < awake.size(); ++i) {
+    begin(*awake[i]);
+    awake[i]->slot = static_cast<std::uint32_t>(i + 1);
+  }
 }
 
 /// Not known if what is not a ball turns.
@@ -456,11 +572,37 @@ std::uint32_t World::find_root(std::uint32_t slot) {
   return slot;
 }
 
+std::uint32_t slot_of(const Body& body) {
+  return body.awake ? body.slot : 0;
+}
+
+void World::unite(const Body& a, const Body& b) {
+  if (slot_of(a) == 0 || slot_of(b) == 0) return;
+  const std::uint32_t p = find_root(a.slot), q = find_root(b.slot);
+  root_[std::max(p, q)] = std::min(p, q);
+}
+
+/// Joined bodies take their impulses together, in the middle of the step.
+void World::set_contact_times(const RigidJoint& joint) {
+  for (Body* body : {joint.a, joint.b}) {
+    if (!body->awake) continue;
+    body->slot = 1;
+    body->arrives = false;
+    body->contact_time = dt_ / 2;
+  }
+}
+
 /// Islands by union-find over the bodies in contact, then links in the order of solving.
 void World::calculateSimulationIslands() {
   std::sort(links_.begin(), links_.end(), comes_before);
   take_manifolds();
   for (const Link& link : links_) set_contact_times(link);
+  awake_joints_.clear();
+  for (const auto& joint : joints) {
+    if (!joint || !(joint->a->awake || joint->b->awake)) continue;
+    set_contact_times(*joint);
+    awake_joints_.push_back(joint.get());
+  }
   in_contact_.assign(1, nullptr);
   for (Body* body : awake) {
     if (body->slot == 0) continue;
@@ -470,16 +612,17 @@ void World::calculateSimulationIslands() {
   }
   root_.resize(in_contact_.size());
   for (std::uint32_t i = 0; i < root_.size(); ++i) root_[i] = i;
-  const auto slot_of = [](const Body& body) { return body.awake ? body.slot : 0; };
-  for (const Link& link : links_) {
-    const std::uint32_t a = slot_of(*link.a), b = slot_of(*link.b);
-    if (a == 0 || b == 0) continue;
-    const std::uint32_t p = find_root(a), q = find_root(b);
-    root_[std::max(p, q)] = std::min(p, q);
-  }
-  for (Link& link : links_) link.island = find_root(std::max(slot_of(*link.a), slot_of(*link.b)));
+  for (const Link& link : links_) unite(*link.a, *link.b);
+  for (const RigidJoint* joint : awake_joints_) unite(*joint->a, *joint->b);
+  const auto island_of = [&](const Body& a, const Body& b) {
+    return find_root(std::max(slot_of(a), slot_of(b)));
+  };
+  for (Link& link : links_) link.island = island_of(*link.a, *link.b);
+  for (RigidJoint* joint : awake_joints_) joint->island = island_of(*joint->a, *joint->b);
   std::stable_sort(links_.begin(), links_.end(),
                    [](const Link& x, const Link& y) { return x.island < y.island; });
+  std::stable_sort(awake_joints_.begin(), awake_joints_.end(),
+                   [](const auto* x, const auto* y) { return x->island < y->island; });
 }
 
 /// Hands the manifolds of the last step to the links that are still there; the others are freed.
@@ -561,16 +704,30 @@ void World::give(Meeting& m, btManifoldPoint& point) const {
 
 void World::solveConstraints(btContactSolverInfo& info) {
   task.dt = dt_;
-  for (std::size_t from = 0, to = 0; from < links_.size(); from = to) {
-    while (to < links_.size() && links_[to].island == links_[from].island) ++to;
-    solve_island({links_.begin() + from, to - from}, info);
+  std::size_t link = 0, joint = 0;
+  while (link < links_.size() || joint < awake_joints_.size()) {
+    const std::size_t first_link = link, first_joint = joint;
+    std::uint32_t island = UINT32_MAX;
+    if (link < links_.size()) island = links_[link].island;
+    if (joint < awake_joints_.size()) island = std::min(island, awake_joints_[joint]->island);
+    while (link < links_.size() && links_[link].island == island) ++link;
+    while (joint < awake_joints_.size() && awake_joints_[joint]->island == island) ++joint;
+    solve_island({links_.begin() + first_link, link - first_link},
+                 {awake_joints_.begin() + first_joint, joint - first_joint}, info);
   }
   account();
 }
 
-void World::solve_island(std::span<const Link> links, btContactSolverInfo& info) {
+void World::solve_island(std::span<const Link> links, std::span<RigidJoint* const> joined,
+                         btContactSolverInfo& info) {
   solved_bodies_.clear();
   solved_manifolds_.clear();
+  solved_joints_.clear();
+  for (RigidJoint* joint : joined) {
+    solved_joints_.push_back(joint->in_bullet.get());
+    for (const Body* body : {joint->a, joint->b})
+      if (body->awake) solved_bodies_.push_back(body->in_bullet.get());
+  }
   for (const Link& link : links) {
     fill(link);
     solved_manifolds_.push_back(link.manifold);
@@ -586,9 +743,10 @@ void World::solve_island(std::span<const Link> links, btContactSolverInfo& info)
   solved_bodies_.erase(std::unique(solved_bodies_.begin(), solved_bodies_.end()),
                        solved_bodies_.end());
   solver->solveGroup(solved_bodies_.data(), static_cast<int>(solved_bodies_.size()),
-                     solved_manifolds_.data(), static_cast<int>(solved_manifolds_.size()), nullptr,
-                     0, info, nullptr, getDispatcher());
-  keep_energy(links);
+                     solved_manifolds_.data(), static_cast<int>(solved_manifolds_.size()),
+                     solved_joints_.data(), static_cast<int>(solved_joints_.size()), info, nullptr,
+                     getDispatcher());
+  if (joined.empty()) keep_energy(links);  // joints that lift what had sagged do add energy
 }
 
 /// Contacts only take energy. What a solver that was cut short adds nevertheless is taken back by
@@ -630,10 +788,31 @@ void World::account() {
   for (const Link& link : links_) {
     for (std::uint32_t i = link.first; i < link.first + link.count; ++i) account(task.meetings[i]);
   }
+  for (const RigidJoint* joint : awake_joints_) account(*joint);
   std::stable_sort(contacts.begin(), contacts.end(), [&](const Contact& x, const Contact& y) {
     if (x.a != y.a) return ranks_before(*bodies[x.a], *bodies[y.a]);
     return x.b != y.b && ranks_before(*bodies[x.b], *bodies[y.b]);
   });
+}
+
+/// Of a body's point just before and just after the impulses.
+Vec3 World::mean_velocity(const Body& body, Vec3 arm) const {
+  if (!body.awake) return {};
+  const Vec3 v =
+      body.velocity_before + body.velocity_after + (2 * body.contact_time - dt_) * gravity;
+  return 0.5 * (v + cross(body.spin_then + body.spin_after, arm));
+}
+
+void World::account(const RigidJoint& joint) {
+  const Body &a = *joint.a, &b = *joint.b;
+  const Vec3 force = joint.axes * joint.force, torque = joint.axes * joint.torque;
+  const Vec3 speed = mean_velocity(a, joint.arm_a) - mean_velocity(b, joint.arm_b);
+  const auto spin = [](const Body& body) {
+    return body.awake ? 0.5 * (body.spin_then + body.spin_after) : Vec3{};
+  };
+  work.joint -= dot(force, speed) + dot(torque, spin(a) - spin(b));
+  if (!a.awake) reaction = reaction - force;
+  if (!b.awake) reaction = reaction + force;
 }
 
 /// Work is impulse times the mean of the velocities just before and just after it.
@@ -642,13 +821,7 @@ void World::account(const Meeting& m) {
   p.m_appliedImpulse += m.given;
   p.m_appliedImpulseLateral1 += m.given_along;
   p.m_appliedImpulseLateral2 += m.given_across;
-  const auto mean = [&](const Body& body, Vec3 arm) {
-    if (!body.awake) return Vec3{};
-    const Vec3 v =
-        body.velocity_before + body.velocity_after + (2 * body.contact_time - dt_) * gravity;
-    return 0.5 * (v + cross(body.spin_then + body.spin_after, arm));
-  };
-  const Vec3 speed = mean(*m.a, m.arm_a) - mean(*m.b, m.arm_b);
+  const Vec3 speed = mean_velocity(*m.a, m.arm_a) - mean_velocity(*m.b, m.arm_b);
   const Vec3 friction = ours(p.m_lateralFrictionDir1 * p.m_appliedImpulseLateral1 +
                              p.m_lateralFrictionDir2 * p.m_appliedImpulseLateral2);
   if (!(p.m_appliedImpulse > 0) && friction == Vec3{}) return;
@@ -673,14 +846,20 @@ void World::account(const Meeting& m) {
 void World::integrateTransforms(btScalar) {
   for (Body* body : awake) {
     weight = weight + (dt_ * body->mass) * gravity;
-    work.contact -= advance(*body, gravity, dt_);
+    const Vec3 before = body->centre;
+    const double lifted = advance(*body, gravity, dt_);
+    (body->joints.empty() ? work.contact : work.joint) -= lifted;
+    work.driven += body->mass * dot(gravity - Vec3{0, -params.gravity, 0}, body->centre - before);
     body->in_bullet->setWorldTransform(place(*body, body->axes, body->centre));
   }
 }
 
 /// Puts islands to sleep that lie on something and have been still for a while.
 void World::updateActivationState(btScalar) {
-  for (Body* body : awake) body->still_for = is_slow(*body, 1) ? body->still_for + dt_ : 0;
+  for (Body* body : awake) {
+    const double share = body->joints.empty() ? 1 : kJointedShare;
+    body->still_for = is_slow(*body, share) ? body->still_for + dt_ : 0;
+  }
   if (!params.sleep) return;
   std::vector<char> may_sleep(in_contact_.size(), 0);
   for (const Link& link : links_) {
@@ -688,6 +867,9 @@ void World::updateActivationState(btScalar) {
     for (std::uint32_t i = link.first; i < link.first + link.count; ++i) {
       if (task.meetings[i].gap < kTouch) may_sleep[link.island] = 1;
     }
+  }
+  for (const RigidJoint* joint : awake_joints_) {
+    if (!joint->a->awake || !joint->b->awake) may_sleep[joint->island] = 1;
   }
   for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
     if (in_contact_[slot]->still_for < kSleepAfter) may_sleep[find_root(slot)] = 0;
@@ -792,7 +974,47 @@ void RigidWorld::wake(BodyId id) {
   Body& body = impl_->world.body(id);
   const bool slept = body.moves && !body.awake;
   impl_->world.wake(body);
-  if (slept) impl_->world.rank_last();
+  if (slept) std::sort(impl_->world.awake.begin(), impl_->world.awake.end(), by_rank);
+}
+
+JointId RigidWorld::add_joint(const JointParams& params) {
+  World& world = impl_->world;
+  assert(params.a != kGround && params.a != params.b && "a body is joined to another or the world");
+  return world.insert(
+      std::make_unique<RigidJoint>(world.body(params.a), world.body(params.b), params));
+}
+
+void RigidWorld::remove_joint(JointId id) {
+  impl_->world.remove(impl_->world.joint(id));
+}
+
+JointReaction RigidWorld::joint_reaction(JointId id) const {
+  const RigidJoint& joint = impl_->world.joint(id);
+  const double rate = joint.dt > 0 ? 1 / joint.dt : 0;
+  return {rate * joint.force, rate * joint.torque, joint.gap()};
+}
+
+void RigidWorld::separate(BodyId first, BodyId second) {
+  Body& a = impl_->world.body(first);
+  Body& b = impl_->world.body(second);
+  a.passes.push_back(&b);
+  b.passes.push_back(&a);
+}
+
+void RigidWorld::set_mass(BodyId id, double mass) {
+  impl_->world.set_mass(impl_->world.body(id), mass);
+}
+
+void RigidWorld::set_gravity(Vec3 gravity) {
+  impl_->world.gravity = impl_->world.task.gravity = gravity;
+}
+
+void RigidWorld::set_iterations(int iterations) {
+  impl_->world.getSolverInfo().m_numIterations = iterations;
+}
+
+std::uint64_t RigidWorld::solver_fallbacks() const {
+  return impl_->world.task.fallbacks;
 }
 
 void RigidWorld::exempt(BodyId id, double seconds) {

@@ -5,6 +5,7 @@ namespace sunder {
 namespace {
 
 constexpr std::string_view kSolvers[] = {"hybrid", "bullet"};
+constexpr std::string_view kJointSolvers[] = {"sequential-impulse", "nncg", "dantzig", "lemke"};
 
 }  // namespace
 
@@ -42,6 +43,18 @@ std::span<const Field<SimulationParams>> fields() {
            "For buildings: hybrid carries intact parts by a static solver, bullet moves every "
            "member as a rigid body.",
        .choices = kSolvers},
+      {.name = "joint_solver",
+       .member = &P::joint_solver,
+       .unit = "",
+       .effect = "Bullet's way to solve joints: sequential impulses, nonlinear conjugate gradients, "
+                 "or a direct solver (Dantzig, Lemke: small buildings only).",
+       .choices = kJointSolvers},
+      {"warm_start", &P::warm_start, "",
+       "Whether joints start from the impulses of the last step; Bullet itself starts from none."},
+      {"settle", &P::settle, "s",
+       "Before time 0, with joints that hold whatever happens: the building takes up its weight.",
+       {0, 600}},
+      {"history_step", &P::history_step, "s", "Between samples of the joints' loads.", {1e-4, 10}},
   };
   return table;
 }

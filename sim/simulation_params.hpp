@@ -20,6 +20,11 @@ struct SimulationParams {
   std::int64_t break_depth = 1;    ///< how often a free chunk may break again; 0: never
   bool sleep = true;               ///< bodies at rest leave the solver
   std::string solver = "hybrid";   ///< for buildings
+  // Of buildings with the solver "bullet".
+  std::string joint_solver = "sequential-impulse";  ///< or nncg, dantzig, lemke
+  bool warm_start = true;          ///< joints start from the impulses of the last step
+  double settle = 1;               ///< s before time 0, in which joints hold whatever happens
+  double history_step = 1.0 / 30;  ///< s between samples of the joints' loads
 };
 template <>
 std::span<const Field<SimulationParams>> fields();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "sim/principal_axes.hpp"
 #include "sim/rigid_world.hpp"
@@ -14,6 +15,8 @@ class btRigidBody;
 
 // Internal to the rigid world: what it keeps of a body, and of a contact while a step is taken.
 namespace sunder {
+
+struct RigidJoint;
 
 struct Body {
   explicit Body(Solid of);
@@ -36,6 +39,10 @@ struct Body {
   Vec3 velocity, spin;
   double still_for = 0;   ///< s
   double exempt_for = 0;  ///< s; meets only balls and the ground
+  std::vector<RigidJoint*> joints;   ///< by age
+  std::vector<const Body*> passes;   ///< bodies that it never touches
+  std::vector<const Body*> near;     ///< up to two joints away, sorted; valid if near_is_known
+  bool near_is_known = true;
 
   // Of the step in progress.
   Vec3 velocity_before, spin_before;

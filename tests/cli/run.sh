@@ -184,6 +184,7 @@ reports_agree() {
 }
 scenes_are_sound() {
   for scene in "$source"/data/scenes/*.json; do
+    grep -q '"building"' "$scene" && continue
     expect_exit 0 "$sunder" fracture "$scene" -o s.glb -o s.obj --report s.json
     expect_text s.json '"sound": true'
     expect_exit 0 "$sunder" check s.glb s.obj
@@ -295,7 +296,7 @@ same_output() {  # two names of one file
   expect_exit 0 "$sunder" fracture $wall -o a.svg -o x/a.svg
 }
 schemas() {
-  for which in scene material report impact-report; do
+  for which in scene material report impact-report collapse-report; do
     expect_exit 0 "$sunder" schema $which
     expect_text out "json-schema.org/draft-07"
   done
@@ -367,6 +368,115 @@ impact_input() {
   expect_exit 3 "$sunder" impact s.json --report r.json
   expect_text err "other.obj"
   expect_files "other.obj s.json"
+}
+
+building_scene() {  # two bays by two, two storeys, and a ball that hits a post of the corner
+  cat > s.json << 'END'
+{"sunder": 1,
+ "building": {"posts": [3, 3], "storeys": 2},
+ "projectiles": [{"name": "ball", "radius": 0.4, "mass": 2000, "position": [-3, 2, 0],
+                  "velocity": [20, 0, 0]}],
+ "simulation": {"duration": 1}}
+END
+}
+collapse_usage() {
+  building_scene
+  while IFS='|' read -r words message; do
+    expect_exit 2 "$sunder" collapse $words
+    expect_text err "error: $message"
+  done << 'END'
+|collapse needs a scene file
+s.json|collapse has nothing to write: give -o FILE
+s.json -o a.stl|-o a.stl: collapse writes .glb .gltf .svg .json
+s.json -o a.obj|-o a.obj: collapse writes .glb .gltf .svg .json, and .obj with --at
+s.json -o a.obj -o a.stl --at 1|-o a.stl: collapse writes
+s.json --history x.txt|--history x.txt: a history is a .csv or .json file
+s.json --history x|--history x: a history is a .csv or .json file
+s.json --history s.json|s.json would overwrite the input
+s.json --history a.json --report ./a.json|a.json is written twice
+s.json -o a.glb --at -1|--at -1: expected seconds
+s.json -o a.glb --at 1s|--at 1s: expected seconds
+s.json -o a.glb --at inf|--at inf: expected seconds
+s.json --report r.json --at 1|--at says which moment -o FILE.glb, .gltf or .obj shows
+s.json -o a.svg --at 1|--at says which moment -o FILE.glb, .gltf or .obj shows
+s.json -o a.glb --at 1.1|--at 1.1 is after the end of the run, which lasts 1 s
+s.json -o a.glb --at 1 --at 2|--at is given twice
+s.json t.json -o a.glb|"t.json" belongs to no option
+s.json -o a.glb --histroy=a.csv|there is no option "--histroy", did you mean "--history"?
+s.json -o a.glb --set building.storeys=0|--set: /building/storeys: 0 is outside
+END
+  expect_exit 2 "$sunder" impact s.json -o a.glb --history=a.csv
+  expect_text err 'there is no option "--history"'
+  expect_exit 0 "$sunder" collapse --help
+  expect_text out "--history"
+  expect_exit 0 "$sunder" schema collapse-report
+  expect_files "s.json"
+}
+collapse_input() {
+  collapse() { "$sunder" collapse "$1" --report r.json "${@:2}"; }
+  expect_exit 3 collapse missing.json
+  expect_text err "missing.json"
+  echo '{"sunder": 1, "walls": [{}]}' > w.json
+  expect_exit 3 collapse w.json
+  expect_text err "the scene has no building to bring down"
+  echo '{"sunder": 1, "building": {"storeyss": 2}}' > b.json
+  expect_exit 3 collapse b.json
+  expect_text err 'b.json:1: /building/storeyss'
+  expect_text err 'did you mean "storeys"'
+  building_scene
+  expect_exit 3 collapse s.json --set 'projectiles.0.position=[0, 2, 0]'
+  expect_text err '"ball"'
+  expect_exit 3 collapse s.json --set 'projectiles.0.position=[-3, 0.1, 0]'
+  expect_text err '"ball"'
+  for verb in fracture impact; do
+    expect_exit 3 "$sunder" $verb s.json --report r.json
+    expect_text err "the scene has no walls"
+  done
+  printf '0, 0.1\n1, 0.2\n' > quake.csv
+  sed -i '$s/}$/, "scenario": {"ground_motion": "quake.csv"}}/' s.json
+  expect_exit 2 collapse s.json --history ./quake.csv
+  expect_text err "quake.csv would overwrite the input"
+  expect_files "b.json quake.csv s.json w.json"
+}
+collapse_is_the_same() {
+  building_scene
+  run() {  # number, more options
+    expect_exit 0 "$sunder" collapse s.json "${@:2}" -o $1.glb -o $1.svg --report $1.json --history $1.csv
+  }
+  run 1
+  expect_text err 'sunder: warning: the solver "hybrid" is not part of this version, "bullet" is used'
+  expect_text 1.json 'the solver \"hybrid\" is not part of this version'
+  expect_text 1.json '"name": "bullet"'
+  run 2 --threads 1
+  run 3 --threads 2
+  run 4 --no-skip
+  run 5 --set 'simulation.solver="bullet"'
+  grep -q hybrid err && fail "bullet is asked for, and hybrid is missed"
+  grep '"hash"' 1.json > hash
+  [ -s hash ] || fail "the report has no hash"
+  for n in 2 3 4 5; do
+    grep -qF "$(cat hash)" $n.json || fail "the hash of run $n differs"
+    for suffix in glb svg csv; do
+      cmp 1.$suffix $n.$suffix || fail "the .$suffix of run $n differs"
+    done
+  done
+  grep -q '"broken_joints": \[\],' 1.json && fail "nothing broke"
+  # What is not asked for is not kept, and changes nothing.
+  expect_exit 0 "$sunder" collapse s.json --json
+  expect_text out "$(cat hash)"
+}
+collapse_files() {
+  building_scene
+  short="--set simulation.duration=0.2"
+  expect_exit 0 "$sunder" collapse s.json $short -o a.glb -o a.obj -o a.svg --at 0.2 --history h.json
+  expect_text h.json '"times"'
+  grep -q '"animations"' a.glb && fail "a moment is no animation"
+  expect_exit 0 "$sunder" collapse s.json $short -o b.glb --history h.csv --quiet
+  [ "$(head -n 1 h.csv)" = \
+    time,joint,N,Vy,Vz,T,My,Mz,force_utilisation,torque_utilisation,utilisation ] ||
+    fail "another header"
+  grep -q '"animations"' b.glb || fail "no animation"
+  expect_files "a.glb a.mtl a.obj a.svg b.glb h.csv h.json s.json"
 }
 
 "$case"

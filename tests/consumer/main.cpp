@@ -1,11 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program of somebody else: finds the installed library, fractures a wall, writes a file, and
-// hits the wall.
+// A program of somebody else: finds the installed library, fractures a wall, writes a file, hits
+// the wall, and takes a post from under a building.
 #include <cstdio>
 
 #include "fracture/asset.hpp"
+#include "io/collapse_scene.hpp"
 #include "io/export.hpp"
 #include "io/impact_scene.hpp"
+
+namespace {
+
+bool loses_a_post() {
+  const sunder::Scene scene = sunder::parse_scene(
+      R"({"sunder": 1, "building": {"posts": [2, 3], "storeys": 2},
+          "scenario": {"remove": ["post_0_1_0"]}, "simulation": {"duration": 0.1}})",
+      "own text");
+  const sunder::CollapseResult result = sunder::simulate_collapse(sunder::collapse_scene(scene));
+  std::printf("%zu joints broken\n", result.broken_joints.size());
+  for (const sunder::RecordedPart& part : result.recording.parts)
+    if (part.name == "post_0_1_0") return part.removed == 0 && result.broken_joints.size() >= 5;
+  return false;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
@@ -26,5 +43,6 @@ int main(int argc, char** argv) {
   scene.simulation.duration = 0.2;
   const sunder::ImpactResult result = sunder::simulate_impact(scene);
   std::printf("%llu chunks freed\n", static_cast<unsigned long long>(result.chunks_freed));
-  return asset.walls[0].pattern.cell_count() > 100 && result.chunks_freed > 0 ? 0 : 1;
+  const bool has_hit = asset.walls[0].pattern.cell_count() > 100 && result.chunks_freed > 0;
+  return has_hit && loses_a_post() ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/same_keys.hpp"
 #include "io/scene.hpp"
 #include "io/schema_validator.hpp"
 #include "meshing/random.hpp"
@@ -155,28 +156,6 @@ TEST(ImpactReport, ManyBreaksAreAllWritten) {
 }
 
 // --- Schema ----------------------------------------------------------------------------------
-
-/// Every object that is written has exactly the keys its schema describes, all the way down.
-void expect_same_keys(const Json& schema, const Json& value, const std::string& where) {
-  if (value.is_array()) {
-    for (const Json& each : value) expect_same_keys(schema["items"], each, where + "[]");
-  }
-  if (!value.is_object() || where == "/time") return;
-  ASSERT_TRUE(schema.contains("properties")) << where;
-  std::vector<std::string> written, described;
-  for (const auto& [key, each] : value.items()) {
-    written.push_back(key);
-    if (schema["properties"].contains(key)) {
-      expect_same_keys(schema["properties"][key], each, where + '/' + key);
-    }
-  }
-  for (const auto& [key, each] : schema["properties"].items()) {
-    described.push_back(key);
-    EXPECT_FALSE(each.value("description", "").empty()) << where << '/' << key;
-  }
-  EXPECT_EQ(written, described) << where;
-  EXPECT_EQ(schema["required"].get<std::vector<std::string>>(), described) << where;
-}
 
 TEST(ImpactReportSchema, DescribesEveryKeyThatIsWritten) {
   const Json schema = Json::parse(json_schema("impact-report"));

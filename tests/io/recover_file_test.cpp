@@ -74,7 +74,8 @@ TEST_P(RecoverScene, AWallFromAnObjIsTheOneInMemoryBitForBit) {
 std::vector<std::filesystem::path> scenes() {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(SUNDER_SOURCE_DIR "/data/scenes"))
-    if (entry.path().extension() == ".json") paths.push_back(entry.path());
+    if (entry.path().extension() == ".json" && !read_scene(entry.path()).walls.empty())
+      paths.push_back(entry.path());
   std::ranges::sort(paths);
   return paths;
 }

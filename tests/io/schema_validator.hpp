@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -68,7 +69,8 @@ class SchemaValidator {
                                              "required",
                                              "properties",
                                              "additionalProperties",
-                                             "patternProperties"};
+                                             "patternProperties",
+                                             "propertyNames"};
     if (comments.contains(key)) return true;
     if (!known.contains(key)) throw std::logic_error("unknown schema keyword " + key);
     if (key == "type") {
@@ -98,9 +100,15 @@ class SchemaValidator {
     return key != "exclusiveMinimum" || value > rule;
   }
 
+  /// Kept: to compile one takes longer than all the rest.
+  static const std::regex& compiled(const std::string& pattern) {
+    static std::map<std::string, std::regex> all;
+    return all.try_emplace(pattern, pattern).first->second;
+  }
+
   static bool holds_for_text(const std::string& key, const Json& rule, const Json& value) {
     return key != "pattern" ||
-           std::regex_search(value.get<std::string>(), std::regex(rule.get<std::string>()));
+           std::regex_search(value.get<std::string>(), compiled(rule.get<std::string>()));
   }
 
   bool holds_for_list(const std::string& key, const Json& rule, const Json& value) const {
@@ -129,9 +137,10 @@ class SchemaValidator {
       if (key == "additionalProperties" && !is_known && !accepts(rule, member.value())) {
         return false;
       }
+      if (key == "propertyNames" && !accepts(rule, Json(member.key()))) return false;
       if (key == "patternProperties") {
         for (const auto& pattern : rule.items()) {
-          const bool applies = std::regex_search(member.key(), std::regex(pattern.key()));
+          const bool applies = std::regex_search(member.key(), compiled(pattern.key()));
           if (applies && !accepts(pattern.value(), member.value())) return false;
         }
       }

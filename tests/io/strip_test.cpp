@@ -9,6 +9,7 @@
 
 #include "io/sample_asset.hpp"
 #include "io/sample_recording.hpp"
+#include "io/sight.hpp"
 #include "io/strip_camera.hpp"
 #include "io/strip_order.hpp"
 #include "io/strip_scene.hpp"
@@ -126,30 +127,6 @@ TEST(StripSteps, AreEvenWhereNothingBreaksAndNeverTwiceTheSame) {
   EXPECT_EQ(strip_steps(sample(), 1).size(), 1u);
 }
 
-// Smallest distance along a ray at which it is inside a prism; none if it misses.
-std::optional<double> hit_of(const StripSolid& solid, Vec3 direction) {
-  const Vec3 d = rotate(conjugate(solid.pose.rotation), direction);
-  double enter = 0, leave = std::numeric_limits<double>::infinity();
-  const auto clip = [&](double height, double slope) {  // inside where height + t slope <= 0
-    if (slope == 0) {
-      if (height > 0) leave = -1;
-    } else if (slope < 0) {
-      enter = std::max(enter, -height / slope);
-    } else {
-      leave = std::min(leave, -height / slope);
-    }
-  };
-  clip(solid.eye.z - solid.half, d.z);
-  clip(-solid.eye.z - solid.half, -d.z);
-  for (std::size_t i = 0; i < solid.outline.size(); ++i) {
-    const Vec2 p = solid.outline[i], q = solid.outline[(i + 1) % solid.outline.size()];
-    const Vec2 n{q.y - p.y, p.x - q.x};
-    clip(n.x * (solid.eye.x - p.x) + n.y * (solid.eye.y - p.y), n.x * d.x + n.y * d.y);
-  }
-  if (enter > leave) return std::nullopt;
-  return enter;
-}
-
 // Boxes that do not touch, seen from the origin: rods and plates of many sizes, turned at random.
 class RandomBoxes {
  public:
@@ -222,25 +199,12 @@ class RandomBoxes {
   std::vector<Frame> frames_;
 };
 
-// Lines of sight through random boxes on which an order paints the nearest one last, or does not.
-struct Sights {
-  std::size_t right = 0, wrong = 0;
-};
-Sights look_through(const std::vector<StripSolid>& solids, std::span<const std::uint32_t> order,
-                    std::uint64_t seed) {
-  Sights result;
+std::vector<Vec3> random_rays(std::uint64_t seed) {
+  std::vector<Vec3> rays;
   for (std::uint64_t k = 0; k < 1500; ++k) {
-    const Vec3 ray{random_unit(seed, k, 17) - 0.5, random_unit(seed, k, 18) - 0.5, -1};
-    double nearest = 1e300, of_last = -1;
-    for (const std::uint32_t i : order) {
-      const std::optional<double> hit = hit_of(solids[i], ray);
-      if (!hit) continue;
-      nearest = std::min(nearest, *hit);
-      of_last = *hit;
-    }
-    if (of_last >= 0) ++(of_last == nearest ? result.right : result.wrong);
+    rays.push_back({random_unit(seed, k, 17) - 0.5, random_unit(seed, k, 18) - 0.5, -1});
   }
-  return result;
+  return rays;
 }
 
 // The oracle is ray casting: of all solids a line of sight meets, the nearest is painted last.
@@ -250,12 +214,13 @@ TEST(PaintersOrder, TheNearestSolidOfEveryLineOfSightIsPaintedLast) {
     const RandomBoxes boxes(seed, 120, false);
     const std::vector<std::uint32_t> order = painters_order(boxes.solids);
     ASSERT_EQ(order.size(), boxes.solids.size());
-    const Sights a = look_through(boxes.solids, order, seed);
+    const std::vector<Vec3> rays = random_rays(seed);
+    const Sights a = look_along(rays, boxes.solids, order);
     painted.right += a.right, painted.wrong += a.wrong;
     std::vector<std::uint32_t> sorted = order;
     std::ranges::sort(sorted, std::greater<>(),
                       [&](std::uint32_t i) { return boxes.solids[i].distance; });
-    const Sights b = look_through(boxes.solids, sorted, seed);
+    const Sights b = look_along(rays, boxes.solids, sorted);
     by_distance.right += b.right, by_distance.wrong += b.wrong;
   }
   EXPECT_GT(painted.right, 5000u);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/run_report.hpp"
+
+namespace sunder {
+namespace {
+
+std::string hex_digits(std::uint64_t value) {
+  std::string digits(16, '0');
+  for (std::size_t i = 16; i-- > 0; value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
+  return digits;
+}
+
+}  // namespace
+
+void write_ledger(JsonLines& json, double energy_in, const EnergyLedger& energy) {
+  json.number("in", energy_in);
+  json.number("kinetic", energy.kinetic);
+  json.number("potential", energy.potential);
+  json.number("strain", energy.strain);
+  json.number("fracture", energy.fracture);
+  json.number("friction", energy.friction);
+  json.number("contact", energy.contact);
+  json.number("numerical", energy.numerical);
+}
+
+void write_projectiles(JsonLines& json, const std::vector<ProjectileOutcome>& projectiles) {
+  json.open("projectiles", '[');
+  for (const ProjectileOutcome& each : projectiles) {
+    json.open('{');
+    json.text("name", each.name);
+    json.truth("hit", each.hit);
+    json.truth("perforated", each.perforated);
+    json.number("speed_before", each.speed_before);
+    json.number("residual_speed", each.residual_speed);
+    json.number("ballistic_speed", each.ballistic_speed);
+    json.number("contact_force", each.contact_force);
+    json.close();
+  }
+  json.close();
+}
+
+void write_solves_and_hash(JsonLines& json, std::uint64_t hash) {
+  json.open("solves", '{');
+  for (const char* key : {"full", "update", "skipped"}) json.count(key, 0);
+  json.close();
+  json.text("hash", hex_digits(hash));
+}
+
+void write_end(JsonLines& json, const std::vector<std::string>& warnings, const RunTimes& times) {
+  json.open("warnings", '[');
+  for (const std::string& warning : warnings) json.text(warning);
+  json.close();
+  json.open("time", '{');
+  for (const auto& [step, seconds] : times) json.number(step + "_s", seconds);
+  json.close();
+}
+
+}  // namespace sunder
