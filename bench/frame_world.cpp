@@ -106,8 +106,7 @@ double Assembly::weight() const {
 Assembly assembly_of(const Frame& frame) {
   Assembly assembly;
   assembly.parts = solids_of(frame);
-  for (const FrameJoint& j : frame.joints)
-    assembly.joints.push_back({j.a, j.b, j.point, j.axes});
+  for (const FrameJoint& j : frame.joints) assembly.joints.push_back({j.a, j.b, j.point, j.axes});
   std::vector<std::uint8_t> goes_on(frame.nodes.size(), 0);
   const auto is_post = [](const FrameMember& m) { return m.kind == FrameMember::Kind::post; };
   for (const FrameMember& member : frame.members)
@@ -123,8 +122,7 @@ Assembly column_of(int count, double mass, double height) {
   const Axes upright{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}, up{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
     const Vec3 foot{0, i * height, 0}, half{0, height / 2, 0};
-    assembly.parts.push_back(
-        box({kHalfWidth, kHalfWidth, height / 2}, mass, foot + half, upright));
+    assembly.parts.push_back(box({kHalfWidth, kHalfWidth, height / 2}, mass, foot + half, upright));
     assembly.joints.push_back({i, i == 0 ? kNoPart : i - 1, foot, up});
     assembly.tops = {{i, foot + 2 * half}};
   }

@@ -68,8 +68,8 @@ class BulletFrame final : public FrameWorld {
   Reaction reaction(std::uint32_t joint) const override {
     const Assembly::Joint& j = assembly_.joints[joint];
     // The joint's axes turn with part a; feedback is in the world's.
-    const btMatrix3x3 turn = body(j.a).getWorldTransform().getBasis() *
-                             as_bullet(assembly_.parts[j.a].axes).transpose();
+    const btMatrix3x3 turn =
+        body(j.a).getWorldTransform().getBasis() * as_bullet(assembly_.parts[j.a].axes).transpose();
     const auto told = [&](const btVector3& v) { return into(j.axes, ours(turn.transpose() * v)); };
     const Vec3 force = told(feedback_[joint].m_appliedForceBodyA);
     const Vec3 torque = told(feedback_[joint].m_appliedTorqueBodyA);

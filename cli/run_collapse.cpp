@@ -41,8 +41,6 @@ bool is_recording(const std::filesystem::path& path) {
 // What the scene asks for and this version does not do.
 std::vector<std::string> shortcomings(const Scene& scene) {
   std::vector<std::string> list;
-  if (scene.simulation.solver == "hybrid")
-    list.emplace_back("the solver \"hybrid\" is not part of this version, \"bullet\" is used");
   if (!scene.walls.empty())
     list.emplace_back("walls beside the building are not used by collapse in this version");
   return list;
@@ -79,7 +77,6 @@ int run_collapse(const Options& options) {
   Stopwatch watch;
   const Scene scene = read_building(options);
   CollapseScene collapse = collapse_scene(scene);
-  collapse.simulation.solver = "bullet";  // see shortcomings()
   watch.lap("read");
   CollapseResult result = simulate(collapse, options);
   watch.lap("simulate");

@@ -70,6 +70,7 @@ void write_balance(JsonLines& json, const CollapseResult& r) {
   json.open("energy", '{');
   write_ledger(json, r.energy_in, r.energy);
   json.number("joint", r.joint_work);
+  json.number("damping", r.damping);
   json.close();
 }
 
@@ -81,6 +82,7 @@ void write_solver(JsonLines& json, const SimulationParams& params, const Collaps
   json.truth("warm_start", params.warm_start);
   json.number("step", params.step);
   json.count("fallbacks", r.solver_fallbacks);
+  json.number("residual", r.residual);
   json.close();
 }
 
@@ -113,7 +115,7 @@ std::string collapse_report_json(const CollapseReport& report) {
     write_balance(json, result);
     write_projectiles(json, result.projectiles);
     write_solver(json, scene.simulation, result);
-    write_solves_and_hash(json, result.hash);
+    write_solves_and_hash(json, result.solves, result.hash);
     write_skipped(json, result);
     write_end(json, result.warnings, report.times);
     json.close();

@@ -58,7 +58,7 @@ void write_breaks(JsonLines& json, const Recording& recording) {
 }
 
 void write_work(JsonLines& json, const ImpactResult& r) {
-  write_solves_and_hash(json, r.hash);
+  write_solves_and_hash(json, {}, r.hash);
   json.open("skipped", '{');
   json.count("walls_untouched", r.walls_untouched);
   json.count("hulls_not_built", r.hulls_not_built);

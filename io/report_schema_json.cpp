@@ -124,6 +124,7 @@ constexpr ReportKey kModeKeys[] = {
     {"buckling", "integer", "The post below or above buckled."},
     {"unbraced", "integer", "The last beam at the joint of two posts was gone."},
     {"removed", "integer", "Its part was taken away by the scenario."},
+    {"unheld", "integer", "What it held had lost too many other joints to be in balance."},
 };
 
 constexpr ReportKey kSagKeys[] = {
@@ -152,6 +153,8 @@ constexpr ReportKey kSolverKeys[] = {
     {"warm_start", "boolean", "Joints start from the impulses of the last step."},
     {"step", "number", "As in the scene. Unit: s."},
     {"fallbacks", "integer", "Steps in which a direct solver failed and iterations took over."},
+    {"residual", "number",
+     "Largest error of equilibrium of the frame solver, by the largest load; 0: it is not used."},
 };
 
 constexpr ReportKey kStepKeys[] = {
@@ -187,7 +190,8 @@ constexpr ReportKey kPeakKeys[] = {
 };
 
 constexpr ReportKey kJointWorkKeys[] = {
-    {"joint", "number", "Lost in joints: shocks, and the correction of their drift."},
+    {"joint", "number", "Lost in rigid joints: shocks, and the correction of their drift."},
+    {"damping", "number", "Taken by the damping of a ringing frame."},
 };
 
 constexpr ReportKey kProjectileKeys[] = {

@@ -39,9 +39,11 @@ void write_projectiles(JsonLines& json, const std::vector<ProjectileOutcome>& pr
   json.close();
 }
 
-void write_solves_and_hash(JsonLines& json, std::uint64_t hash) {
+void write_solves_and_hash(JsonLines& json, const SolveCounts& solves, std::uint64_t hash) {
   json.open("solves", '{');
-  for (const char* key : {"full", "update", "skipped"}) json.count(key, 0);
+  json.count("full", solves.full);
+  json.count("update", solves.update);
+  json.count("skipped", solves.skipped);
   json.close();
   json.text("hash", hex_digits(hash));
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/json_lines.hpp"
+#include "sim/collapse.hpp"
 #include "sim/impact.hpp"
 
 namespace sunder {
@@ -38,7 +39,7 @@ void write_run(JsonLines& json, std::string_view version, std::uint64_t seed, do
 void write_ledger(JsonLines& json, double energy_in, const EnergyLedger& energy);
 void write_projectiles(JsonLines& json, const std::vector<ProjectileOutcome>& projectiles);
 /// "solves": zeros as long as there is no static solver; "hash": 16 hexadecimal digits.
-void write_solves_and_hash(JsonLines& json, std::uint64_t hash);
+void write_solves_and_hash(JsonLines& json, const SolveCounts& solves, std::uint64_t hash);
 /// "warnings" and "time", the last keys of a report.
 void write_end(JsonLines& json, const std::vector<std::string>& warnings, const RunTimes& times);
 

@@ -61,6 +61,12 @@ struct CollapseParams {
   Progress progress = {};
 };
 
+/// Factors of the frame solver.
+struct SolveCounts {
+  std::uint64_t full = 0, update = 0;
+  std::uint64_t skipped = 0;  ///< steps in which nothing had to be solved
+};
+
 /// Why a joint broke.
 struct JointBreak {
   std::uint32_t joint = 0;
@@ -100,6 +106,9 @@ struct CollapseResult {
   double momentum_error = 0;
   double penetration_max = 0;
   EnergyLedger energy;               ///< `numerical` holds what the solver's drift correction did not
+  double damping = 0;                ///< taken by the damping of a ringing frame, J
+  SolveCounts solves;                ///< of the frame solver
+  double residual = 0;               ///< its largest |K u − f| / |f|
   double joint_work = 0;             ///< lost in joints (rigid ones: shocks and correction), J
   double energy_in = 0;              ///< of projectiles, added loads and ground motion, J
   std::uint64_t solver_fallbacks = 0;  ///< steps in which a direct solver failed

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/collapse.hpp"
+#include "sim/frame_motion.hpp"
 #include "sim/post_stability.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -21,17 +22,14 @@ class CollapseRun {
 
  private:
   struct Part {
-    PartSolid solid;
-    BodyId body = kNoBody;
     std::uint32_t track = kNoTrack;
     double removed = std::numeric_limits<double>::infinity();
   };
   struct Joint {
-    JointId id = 0;
     bool intact = true;
     double broken = std::numeric_limits<double>::infinity();
-    JointLoad load;          ///< mean over the load time
-    double utilisation = 0;  ///< of it
+    bool is_read = false;    ///< since the last sample
+    double utilisation = 0;  ///< at the last reading
     JointSample peak;        ///< since the last sample
   };
   struct Shot {
@@ -50,34 +48,32 @@ class CollapseRun {
   };
 
   // collapse.cpp: set-up, time, outcome.
-  void add_parts();
-  void add_joints();
   void settle();
   void start();
   void step_once(double end);
   double next_substep(double left) const;
-  void advance(double dt);
+  void advance(double dt, bool ends_step);
   void launch_due();
   void launch(std::uint32_t shot);
   void refuse_overlap(const Projectile& projectile) const;
   void remove_parts();
+  void hand_over(std::uint32_t member);
   void raise_load(double dt);
   void record(double time);
   void sample(double time);
-  void note_reactions();
   void note_sag();
   CollapseResult outcome();
   Recording recording();
-  std::uint32_t body_part(BodyId body) const;
   std::vector<std::uint32_t> tops() const;
-  double sag_of(std::uint32_t post) const;
   std::vector<std::uint8_t> grounded() const;
 
   // joint_failure.cpp: loads, and what breaks.
   void break_overloaded();
-  bool is_awake(const FrameJoint& joint) const;
-  JointLoad load_of(std::uint32_t joint) const;
-  void follow(Joint& state, const JointLoad& load) const;
+  void cascade();
+  void keep_most_utilised(std::vector<Failure>& failures) const;
+  void add_unheld(std::vector<Failure>& failures) const;
+  void give_way(std::size_t broken_before);
+  std::uint32_t struck_part(const Contact& contact, BodyId ball) const;
   void read_loads(std::vector<Failure>& failures);
   void check_posts(std::vector<Failure>& failures);
   void check_hits(std::vector<Failure>& failures);
@@ -86,16 +82,17 @@ class CollapseRun {
   void break_joints(std::vector<Failure> failures);
   void break_joint(const Failure& failure);
 
-  const CollapseScene& scene_;
+  CollapseScene scene_;  ///< its frame changes when parts are taken away
   const CollapseParams& params_;
-  const Frame& frame_;
+  Frame& frame_;
+  std::vector<PartSolid> solids_;
   RigidWorld world_;
+  std::unique_ptr<FrameMotion> motion_;
   PostStability posts_;
   std::vector<Part> parts_;
   std::vector<Joint> joints_;
   std::vector<std::vector<std::uint32_t>> joints_of_;  ///< by part
   std::vector<Shot> shots_;
-  std::vector<std::uint32_t> parts_of_body_;  ///< by BodyId; kNoPart: a projectile, the ground
   Recorder recorder_;
   std::vector<double> sample_times_;
   std::vector<JointSample> samples_;
@@ -104,8 +101,8 @@ class CollapseRun {
   bool breaks_ = false;      ///< settled: joints can break
   bool disturbed_ = false;   ///< something has happened to the building
   double added_load_ = 0;    ///< N/m²
-  double baseline_ = 0;      ///< potential energy where everything started, J
-  std::uint64_t reaction_steps_ = 0;
+  double baseline_ = 0;      ///< potential energy of the projectiles where they started, J
+  double start_ = 0;         ///< energy of the standing frame at time 0, J
   Vec3 impulse_;
   double largest_momentum_ = 0, largest_momentum_error_ = 0;
 };

@@ -136,6 +136,11 @@ struct GivenJoint {
 /// of its edges. `given` replaces those of members. Strengths follow from the classes. O(parts).
 void join(Frame& frame, const std::vector<GivenJoint>& given = {});
 
+/// A member is about to be taken away: what it carried at its nodes is carried by the next in rank
+/// there (a post above, else a beam), so that the others still meet. Returns the joints whose part b
+/// changed; joints of the member itself stay as they are. O(joints at its nodes), after a search.
+std::vector<std::uint32_t> hand_over_joints(Frame& frame, std::uint32_t member);
+
 /// What is wrong with a frame, as data.
 struct FrameDefect {
   std::string part;  ///< name of the node, member, slab, wall or joint

@@ -283,4 +283,27 @@ void join(Frame& frame, const std::vector<GivenJoint>& given) {
   joints.join_walls();
 }
 
+std::vector<std::uint32_t> hand_over_joints(Frame& frame, std::uint32_t member) {
+  std::vector<std::uint32_t> changed;
+  for (const std::uint32_t node : {frame.members[member].from, frame.members[member].to}) {
+    std::vector<std::uint32_t> carried;
+    std::uint32_t heir = kNoPart;
+    for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
+      const FrameJoint& joint = frame.joints[j];
+      if (joint.node != node || joint.b != member) continue;
+      const bool is_post = frame.members[joint.a].kind == FrameMember::Kind::post;
+      if (heir == kNoPart || is_post) heir = joint.a;
+      carried.push_back(j);
+    }
+    for (const std::uint32_t j : carried) {
+      FrameJoint& joint = frame.joints[j];
+      if (joint.a == heir) continue;
+      joint.b = heir;
+      joint.end_b = frame.members[heir].from == node ? 0 : 1;
+      changed.push_back(j);
+    }
+  }
+  return changed;
+}
+
 }  // namespace sunder

@@ -56,7 +56,7 @@ class Solver final : public Base {
     int row = 0;
     for (int i = 0; i < count; ++i) {
       const RigidJoint& joint = joint_of(*joints[i]);
-      const double ratio = joint.dt > 0 ? std::min(1.0, task_.dt / joint.dt) : 0;
+      const double ratio = joint.dt > 0 ? task_.dt / joint.dt : 0;
       const double last[] = {joint.force.x,  joint.force.y,  joint.force.z,
                              joint.torque.x, joint.torque.y, joint.torque.z};
       for (int k = 0; k < joint.rows; ++k)

@@ -7,31 +7,83 @@
 
 namespace sunder {
 
-bool CollapseRun::is_awake(const FrameJoint& joint) const {
-  return world_.is_awake(parts_[joint.a].body);
-}
+namespace {
 
-/// Section forces of part a: tension positive. What holds its beginning pulls the other way.
-JointLoad CollapseRun::load_of(std::uint32_t j) const {
-  const JointReaction reaction = world_.joint_reaction(joints_[j].id);
-  const double side = frame_.joints[j].end_a == 1 ? 1 : -1;
-  return {side * reaction.force, side * reaction.torque};
-}
+/// Of the largest utilisation: what is nearly as far over its strength breaks with it.
+constexpr double kTogether = 0.9;
+/// Rounds of breaking and redistribution in a step; what is over its strength then waits for the next.
+constexpr int kMostRounds = 100;
 
-/// A first-order lag, by the implicit rule; the first reading is taken as it is.
-void CollapseRun::follow(Joint& state, const JointLoad& load) const {
-  const double share = last_dt_ > 0 ? last_dt_ / (last_dt_ + scene_.rules.load_time) : 1;
-  state.load.force = state.load.force + share * (load.force - state.load.force);
-  state.load.torque = state.load.torque + share * (load.torque - state.load.torque);
-}
+}  // namespace
 
 void CollapseRun::break_overloaded() {
+  const std::size_t broken_before = result_.broken_joints.size();
   std::vector<Failure> failures, overloads;
   read_loads(overloads);
   check_hits(failures);
-  check_posts(failures);
+  check_posts(overloads);
+  if (!breaks_) return;
+  if (motion_->redistributes()) keep_most_utilised(overloads);
   failures.insert(failures.end(), overloads.begin(), overloads.end());
-  if (breaks_) break_joints(std::move(failures));
+  break_joints(std::move(failures));
+  cascade();
+  give_way(broken_before);
+}
+
+/// Loads redistribute after each break: most utilised first, until what is left carries.
+void CollapseRun::cascade() {
+  for (int round = 0; round < kMostRounds && motion_->settle_breaks(); ++round) {
+    std::vector<Failure> failures;
+    read_loads(failures);
+    check_posts(failures);
+    keep_most_utilised(failures);
+    for (const std::uint32_t j : motion_->unheld_joints())
+      failures.push_back({j, joints_[j].utilisation, "unheld", "balance", {}, true});
+    break_joints(std::move(failures));
+  }
+}
+
+void CollapseRun::keep_most_utilised(std::vector<Failure>& failures) const {
+  double most = 0;
+  for (const Failure& failure : failures) most = std::max(most, failure.utilisation);
+  std::erase_if(failures, [&](const Failure& f) { return f.utilisation < kTogether * most; });
+}
+
+/// What a projectile met stood as if fixed. If joints of it broke under the blow, it could not give
+/// more impulse than they bore: the projectile keeps the rest of its speed.
+void CollapseRun::give_way(std::size_t broken_before) {
+  if (!motion_->redistributes() || result_.broken_joints.size() == broken_before) return;
+  std::vector<std::pair<std::uint32_t, double>> over;  // part, utilisation
+  for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
+    const JointBreak& broken = result_.broken_joints[i];
+    for (const std::uint32_t part : {frame_.joints[broken.joint].a, frame_.joints[broken.joint].b})
+      over.emplace_back(part, broken.utilisation);
+  }
+  for (std::size_t s = 0; s < shots_.size(); ++s) {
+    double most = 0;
+    for (const Contact& contact : world_.contacts()) {
+      if (shots_[s].body == kNoBody ||
+          (contact.a != shots_[s].body && contact.b != shots_[s].body))
+        continue;
+      for (const auto& [part, utilisation] : over)
+        if (part != kNoPart && part == struck_part(contact, shots_[s].body))
+          most = std::max(most, utilisation);
+    }
+    if (most <= 1) continue;
+    const Vec3 now = world_.velocity(shots_[s].body);
+    const Vec3 fall{0, -scene_.simulation.gravity * last_dt_, 0};
+    const Vec3 free = shots_[s].velocity + fall;
+    const double before = world_.kinetic_energy();
+    world_.set_velocity(shots_[s].body, free + (1 / most) * (now - free),
+                        world_.angular_velocity(shots_[s].body));
+    result_.energy.contact -= world_.kinetic_energy() - before;
+  }
+}
+
+/// The part that a ball touches; kNoPart: something else.
+std::uint32_t CollapseRun::struck_part(const Contact& contact, BodyId ball) const {
+  return contact.a == ball ? motion_->part_of(contact.b, contact.part_b)
+                           : motion_->part_of(contact.a, contact.part_a);
 }
 
 void CollapseRun::read_loads(std::vector<Failure>& failures) {
@@ -39,17 +91,16 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
     Joint& state = joints_[j];
     if (!state.intact) continue;
     const FrameJoint& joint = frame_.joints[j];
-    if (is_awake(joint)) {
-      follow(state, load_of(j));
-    } else if (params_.skip && state.peak.utilisation > 0) {
+    const bool is_known = state.is_read && state.utilisation < 1;
+    if (params_.skip && is_known && !motion_->is_live(j)) {
       ++result_.joint_steps_not_read;
       continue;
     }
-    const JointLoad& load = state.load;
+    const JointLoad load = motion_->load(j);
     const Utilisation use = utilisation(load, joint.strength);
     state.utilisation = use.total;
     result_.max_utilisation = std::max(result_.max_utilisation, use.total);
-    if (use.total >= state.peak.utilisation) {
+    if (!state.is_read || use.total >= static_cast<double>(state.peak.utilisation)) {
       const auto narrow = [](Vec3 v) {
         return std::array{static_cast<float>(v.x), static_cast<float>(v.y),
                           static_cast<float>(v.z)};
@@ -57,6 +108,7 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
       state.peak = {narrow(load.force), narrow(load.torque), static_cast<float>(use.force),
                     static_cast<float>(use.torque), static_cast<float>(use.total)};
     }
+    state.is_read = true;
     if (use.total >= 1)
       failures.push_back({j, use.total, "strength", frame_.classes[joint.joint_class].interaction,
                           std::string(use.component), true});
@@ -66,8 +118,8 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
 void CollapseRun::check_posts(std::vector<Failure>& failures) {
   for (const std::uint32_t post : posts_.posts()) {
     const std::uint32_t foot = posts_.foot(post);
-    if (foot == kNoPart || parts_[post].body == kNoBody || !is_awake(frame_.joints[foot])) continue;
-    const double compression = -joints_[foot].load.force.x;
+    if (foot == kNoPart) continue;
+    const double compression = -motion_->load(foot).force.x;
     if (compression <= 0) continue;
     const double use = compression / posts_.resistance(post);
     result_.max_utilisation = std::max(result_.max_utilisation, use);
@@ -80,8 +132,8 @@ void CollapseRun::check_posts(std::vector<Failure>& failures) {
 /// The joint's place now, world.
 Vec3 CollapseRun::place_of(std::uint32_t j) const {
   const FrameJoint& joint = frame_.joints[j];
-  const PartSolid& solid = parts_[joint.a].solid;
-  return world_.pose(parts_[joint.a].body) * into(solid.axes, joint.point - solid.centre);
+  const PartSolid& solid = solids_[joint.a];
+  return motion_->pose(joint.a) * into(solid.axes, joint.point - solid.centre);
 }
 
 /// A projectile breaks the joints of what it touches that lie within its radius of the contact.
@@ -90,7 +142,7 @@ void CollapseRun::check_hits(std::vector<Failure>& failures) {
     for (std::uint32_t s = 0; s < shots_.size(); ++s) {
       const BodyId ball = shots_[s].body;
       if (ball == kNoBody || (contact.a != ball && contact.b != ball)) continue;
-      const std::uint32_t part = body_part(contact.a == ball ? contact.b : contact.a);
+      const std::uint32_t part = struck_part(contact, ball);
       if (part == kNoPart) continue;
       disturbed_ = true;
       note_hit(contact, s, last_dt_);
@@ -110,7 +162,7 @@ void CollapseRun::note_hit(const Contact& contact, std::uint32_t shot, double dt
   if (outcome.hit) return;
   outcome.hit = true;
   outcome.speed_before = length(shots_[shot].velocity);
-  outcome.contact_force = contact.impulse / dt;
+  outcome.contact_force = contact.impulse / std::max(dt, scene_.rules.load_time);
 }
 
 /// Joint by joint; the reason that came first counts. What follows from a loss of bracing follows at
@@ -122,22 +174,20 @@ void CollapseRun::break_joints(std::vector<Failure> failures) {
     if (!joints_[failure.joint].intact) continue;
     break_joint(failure);
     const std::uint32_t splice = posts_.unbraced_splice(failure.joint);
-    if (splice != kNoPart)
+    if (breaks_ && splice != kNoPart)
       failures.push_back({splice, joints_[splice].utilisation, "unbraced", "paper", {}, false});
   }
 }
 
 void CollapseRun::break_joint(const Failure& failure) {
   Joint& state = joints_[failure.joint];
-  const FrameJoint& joint = frame_.joints[failure.joint];
   state.intact = false;
   state.broken = now_;
   posts_.break_joint(failure.joint);
-  world_.remove_joint(state.id);
-  if (!failure.bears_on && joint.b != kNoPart)
-    world_.separate(parts_[joint.a].body, parts_[joint.b].body);
+  motion_->break_joint(failure.joint, failure.bears_on);
   if (!disturbed_) ++result_.broken_at_rest;
-  if (scene_.scenario.load_rate > 0 && result_.first_failure_load == 0) {
+  const bool fails = failure.mode != "removed";
+  if (fails && scene_.scenario.load_rate > 0 && result_.first_failure_load == 0) {
     double live = 0, area = 0;
     for (std::uint32_t s = 0; s < frame_.slabs.size(); ++s) {
       live += frame_.slabs[s].live_load * slab_area(frame_, s);

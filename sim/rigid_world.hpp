@@ -40,11 +40,13 @@ struct WorldParams {
   bool sleep = true;           ///< bodies that rest are taken out of the solver
 };
 
-/// A convex prism: polygon in the XY plane of the design frame, strictly convex, counter-clockwise,
+/// A convex prism: polygon in the XY plane of its own frame, strictly convex, counter-clockwise,
 /// extruded over z = ±half_thickness.
 struct Prism {
   std::vector<Vec2> outline;  ///< m
   double half_thickness = 0;  ///< m
+  Vec3 origin{};              ///< of its frame, in the design frame, m
+  Axes axes{};                ///< of its frame, in the design frame
 };
 
 /// A moving body. It is described in a *design frame* (for a wall's chunk: the wall's frame), so
@@ -86,6 +88,8 @@ struct Contact {
   double impulse = 0;               ///< along the normal on a (and its reverse on b), N s, >= 0
   double friction_impulse = 0;      ///< magnitude, N s
   double approach = 0;              ///< speed at which they came together, m/s
+  std::uint32_t part_a = 0, part_b = 0;  ///< which of the bodies' prisms
+  Vec3 tangential{};                ///< impulse of friction on a, N s
 };
 
 /// Where the energy of a step went, J; positive: lost by the bodies. Impulse times the mean of the

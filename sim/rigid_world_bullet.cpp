@@ -141,6 +141,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void remove(Body& body);
   /// With all that is joined to it.
   void wake(Body& body);
+  void wake_and_rank(Body& body);
   RigidJoint& joint(JointId id) const {
     assert(id < joints.size() && joints[id] && "the joint exists");
     return *joints[id];
@@ -195,7 +196,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
                     btContactSolverInfo& info);
   void keep_energy(std::span<const Link> links);
   void account();
-  void account(const Meeting& meeting);
+  void account(const Link& link, const Meeting& meeting);
   void account(const RigidJoint& joint);
   Vec3 mean_velocity(const Body& body, Vec3 arm) const;
 
@@ -272,8 +273,7 @@ void World::rank_last() {
 }
 
 void World::set_mass(Body& body, double mass) {
-  wake(body);
-  std::sort(awake.begin(), awake.end(), by_rank);
+  wake_and_rank(body);
   const double ratio = mass / body.mass;
   body.mass = mass;
   for (double SymMat3::* each : {&SymMat3::xx, &SymMat3::yy, &SymMat3::zz, &SymMat3::xy,
@@ -293,6 +293,12 @@ void World::wake_alone(Body& body) {
   awake.push_back(&body);
 }
 
+void World::wake_and_rank(Body& body) {
+  const std::size_t count = awake.size();
+  wake(body);
+  if (awake.size() != count) std::sort(awake.begin(), awake.end(), by_rank);
+}
+
 void World::wake(Body& body) {
   if (!body.moves) return;
   if (body.awake || body.joints.empty()) return wake_alone(body);
@@ -310,11 +316,10 @@ void World::wake(Body& body) {
 
 JointId World::insert(std::unique_ptr<RigidJoint> joint) {
   for (Body* body : {joint->a, joint->b}) {
-    wake(*body);
+    wake_and_rank(*body);
     body->joints.push_back(joint.get());
     forget_near(*body);
   }
-  std::sort(awake.begin(), awake.end(), by_rank);
   joint->id = static_cast<JointId>(joints.size());
   joint->corrects_apart = params.warm_start && getSolverInfo().m_globalCfm == 0;
   joints.push_back(std::move(joint));
@@ -323,10 +328,9 @@ JointId World::insert(std::unique_ptr<RigidJoint> joint) {
 
 void World::remove(RigidJoint& joint) {
   for (Body* body : {joint.a, joint.b}) {
-    wake(*body);
+    wake_and_rank(*body);
     forget_near(*body);
   }
-  std::sort(awake.begin(), awake.end(), by_rank);
   for (Body* body : {joint.a, joint.b}) std::erase(body->joints, &joint);
   joints[joint.id].reset();
 }
@@ -352,8 +356,10 @@ bool World::passes(Body& a, const Body& b) {
       const Body& other = joint->a == &a ? *joint->b : *joint->a;
       a.near.push_back(&other);
       if (!other.moves) continue;
-      for (const RigidJoint* next : other.joints)
-        a.near.push_back(next->a == &other ? next->b : next->a);
+      for (const RigidJoint* next : other.joints) {
+        const Body* second = next->a == &other ? next->b : next->a;
+        if (second->moves) a.near.push_back(second);
+      }
     }
     std::sort(a.near.begin(), a.near.end());
     a.near_is_known = true;
@@ -746,7 +752,7 @@ void World::solve_island(std::span<const Link> links, std::span<RigidJoint* cons
                      solved_manifolds_.data(), static_cast<int>(solved_manifolds_.size()),
                      solved_joints_.data(), static_cast<int>(solved_joints_.size()), info, nullptr,
                      getDispatcher());
-  if (joined.empty()) keep_energy(links);  // joints that lift what had sagged do add energy
+  if (joined.empty()) keep_energy(links);  // what carries a building must not be scaled
 }
 
 /// Contacts only take energy. What a solver that was cut short adds nevertheless is taken back by
@@ -786,7 +792,8 @@ void World::keep_energy(std::span<const Link> links) {
 void World::account() {
   contacts.clear();
   for (const Link& link : links_) {
-    for (std::uint32_t i = link.first; i < link.first + link.count; ++i) account(task.meetings[i]);
+    for (std::uint32_t i = link.first; i < link.first + link.count; ++i)
+      account(link, task.meetings[i]);
   }
   for (const RigidJoint* joint : awake_joints_) account(*joint);
   std::stable_sort(contacts.begin(), contacts.end(), [&](const Contact& x, const Contact& y) {
@@ -816,7 +823,7 @@ void World::account(const RigidJoint& joint) {
 }
 
 /// Work is impulse times the mean of the velocities just before and just after it.
-void World::account(const Meeting& m) {
+void World::account(const Link& link, const Meeting& m) {
   btManifoldPoint& p = *m.solved;
   p.m_appliedImpulse += m.given;
   p.m_appliedImpulseLateral1 += m.given_along;
@@ -832,7 +839,7 @@ void World::account(const Meeting& m) {
   if (!m.b->awake) reaction = reaction + on_a;
   const double approach = m.arrives ? m.arrival_speed : std::max(0.0, m.closing + m.pull * dt_);
   contacts.push_back({m.a->id, m.b->id, m.origin + m.point, m.normal, p.m_appliedImpulse,
-                      length(friction), approach});
+                      length(friction), approach, link.part_a, link.part_b, friction});
   p.m_lifeTime = 1;
   const auto after = [&](const Body& body, Vec3 arm) {
     return body.awake ? body.velocity_after + cross(body.spin_after, arm) : Vec3{};
@@ -972,9 +979,7 @@ bool RigidWorld::is_awake(BodyId id) const {
 }
 void RigidWorld::wake(BodyId id) {
   Body& body = impl_->world.body(id);
-  const bool slept = body.moves && !body.awake;
-  impl_->world.wake(body);
-  if (slept) std::sort(impl_->world.awake.begin(), impl_->world.awake.end(), by_rank);
+  impl_->world.wake_and_rank(body);
 }
 
 JointId RigidWorld::add_joint(const JointParams& params) {

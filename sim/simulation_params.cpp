@@ -54,6 +54,17 @@ std::span<const Field<SimulationParams>> fields() {
       {"settle", &P::settle, "s",
        "Before time 0, with joints that hold whatever happens: the building takes up its weight.",
        {0, 600}},
+      {"quasi_static", &P::quasi_static, "",
+       "For hybrid: the standing frame is in balance at any time instead of ringing."},
+      {"p_delta", &P::p_delta, "", "For hybrid: axial forces bend what leans, while nothing rings."},
+      {"diaphragms", &P::diaphragms, "", "For hybrid: slabs are stiff in their own plane."},
+      {"damping_mass",
+       &P::damping_mass,
+       "1/s",
+       "For hybrid: Rayleigh damping, its share of the mass; the defaults give 2 % at 1 and 10 Hz.",
+       {0, 1000}},
+      {"damping_stiffness", &P::damping_stiffness, "s",
+       "For hybrid: Rayleigh damping, its share of the stiffness.", {0, 1}},
       {"history_step", &P::history_step, "s", "Between samples of the joints' loads.", {1e-4, 10}},
   };
   return table;

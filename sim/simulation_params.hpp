@@ -25,6 +25,12 @@ struct SimulationParams {
   bool warm_start = true;          ///< joints start from the impulses of the last step
   double settle = 1;               ///< s before time 0, in which joints hold whatever happens
   double history_step = 1.0 / 30;  ///< s between samples of the joints' loads
+  // Of buildings with the solver "hybrid".
+  bool quasi_static = false;       ///< the standing frame is in balance at any time: it does not ring
+  bool p_delta = false;            ///< second-order effect of axial forces, while nothing rings
+  bool diaphragms = false;         ///< slabs are stiff in their plane
+  double damping_mass = 0.23;      ///< 1/s; Rayleigh's C = this × M + the next × K: 2 % at 1 and 10 Hz
+  double damping_stiffness = 5.8e-4;  ///< s
 };
 template <>
 std::span<const Field<SimulationParams>> fields();

@@ -53,7 +53,7 @@ class PrismShape final : public btConvexHullShape {
     const double margin =
         std::min(kMargin, kMarginShare * std::min(h, inner_radius(prism.outline)));
     const auto placed = [&](Vec2 p, double z) {
-      return bullet(into(axes, Vec3{p.x, p.y, z} - centre));
+      return bullet(into(axes, prism.axes * Vec3{p.x, p.y, z} + prism.origin - centre));
     };
     setMargin(margin);
     for (const Vec2 p : inset(prism.outline, margin)) {
@@ -87,12 +87,12 @@ class PrismShape final : public btConvexHullShape {
       const Vec2 side = prism.outline[j] - prism.outline[i];
       const Vec2 out = (1 / length(side)) * Vec2{side.y, -side.x};
       const int corners[] = {n + i, n + j, j, i};
-      set_face(i, corners, into(axes, {out.x, out.y, 0}));
+      set_face(i, corners, into(axes, prism.axes * Vec3{out.x, out.y, 0}));
     }
     std::vector<int> top(n), bottom(n);
     for (int i = 0; i < n; ++i) top[i] = i, bottom[i] = 2 * n - 1 - i;
-    set_face(n, top, into(axes, {0, 0, 1}));
-    set_face(n + 1, bottom, into(axes, {0, 0, -1}));
+    set_face(n, top, into(axes, prism.axes.z));
+    set_face(n + 1, bottom, into(axes, -1.0 * prism.axes.z));
   }
 
   void set_face(int number, std::span<const int> corners, Vec3 normal) {

@@ -190,6 +190,25 @@ scenes_are_sound() {
     expect_exit 0 "$sunder" check s.glb s.obj
   done
 }
+buildings_run() {  # each for the first moments: it stands, and its report is whole
+  local count=0
+  for scene in "$source"/data/scenes/*.json; do
+    grep -q '"building"' "$scene" || continue
+    count=$((count + 1))
+    expect_exit 0 "$sunder" collapse "$scene" --set simulation.duration=0.2 -o b.glb -o b.svg \
+      --report b.json --history b.csv
+    for key in '"broken_at_rest": 0,' '"broken_by": {' '"weight": ' '"sag": {' '"hash": "' \
+               '"warnings": []'; do
+      expect_text b.json "$key"
+    done
+    # Joules that nothing explains, against the building lifted by a metre.
+    awk 'match($0, /"weight": [^,}]*/) {weight = substr($0, RSTART + 10, RLENGTH - 10)}
+         match($0, /"numerical": [^,}]*/) {lost = substr($0, RSTART + 13, RLENGTH - 13)}
+         END {exit !(weight > 0 && lost != "" && lost * lost < 1e-18 * weight * weight)}' b.json ||
+      fail "$scene: energy.numerical is too large: $(grep numerical b.json)"
+  done
+  [ "$count" -ge 4 ] || fail "only $count scenes have a building"
+}
 planted_faults() {
   expect_exit 0 "$sunder" fracture $wall -o a.obj
   awk '/^v / && ++n == 100 {$2 += 0.01} {print}' a.obj > moved.obj
@@ -340,7 +359,7 @@ impact_is_the_same() {
   expect_exit 0 "$sunder" impact asset.json $short -o 5.glb -o 5.svg --report 5.json
   grep '"hash"' 1.json > hash
   [ -s hash ] || fail "the report has no hash"
-  for n in 2 3 4 5; do
+  for n in 2 3 4; do
     grep -qF "$(cat hash)" $n.json || fail "the hash of run $n differs"
     cmp 1.glb $n.glb || fail "the recording of run $n differs"
     cmp 1.svg $n.svg || fail "the pictures of run $n differ"
@@ -444,17 +463,13 @@ collapse_is_the_same() {
     expect_exit 0 "$sunder" collapse s.json "${@:2}" -o $1.glb -o $1.svg --report $1.json --history $1.csv
   }
   run 1
-  expect_text err 'sunder: warning: the solver "hybrid" is not part of this version, "bullet" is used'
-  expect_text 1.json 'the solver \"hybrid\" is not part of this version'
-  expect_text 1.json '"name": "bullet"'
+  expect_text 1.json '"name": "hybrid"'
   run 2 --threads 1
   run 3 --threads 2
   run 4 --no-skip
-  run 5 --set 'simulation.solver="bullet"'
-  grep -q hybrid err && fail "bullet is asked for, and hybrid is missed"
   grep '"hash"' 1.json > hash
   [ -s hash ] || fail "the report has no hash"
-  for n in 2 3 4 5; do
+  for n in 2 3 4; do
     grep -qF "$(cat hash)" $n.json || fail "the hash of run $n differs"
     for suffix in glb svg csv; do
       cmp 1.$suffix $n.$suffix || fail "the .$suffix of run $n differs"

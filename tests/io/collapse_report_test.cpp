@@ -49,6 +49,7 @@ CollapseResult sample_result() {
   r.momentum_error = 1e-13, r.penetration_max = 0.0625;
   r.energy = {101, 102, 103, 104, 105, 106, -0.125};
   r.joint_work = 107, r.energy_in = 25700, r.solver_fallbacks = 9;
+  r.damping = 108, r.residual = 1e-12, r.solves = {11, 12, 13};
   r.projectiles = {{"ball", true, false, 10.5, 3.25, 9.75, 2.5e6}};
   r.hash = 0x00ab0000000000cdu;
   r.body_steps_asleep = 9000, r.joint_steps_not_read = 8000, r.poses_not_recorded = 210000;
@@ -86,7 +87,8 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
        "component": ""},
       {"joint": "beam@post_a", "time": 0.75, "utilisation": 1.0625, "mode": "buckling",
        "rule": "ec3", "component": ""}],
-    "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0},
+    "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0,
+                  "unheld": 0},
     "broken_at_rest": 1, "broken_bonds": 0, "max_utilisation": 4.75,
     "utilisation_at_rest": 0.375, "first_failure_load": 12500, "joint_gap": 0.0005,
     "sag": {"mean": 0.001, "max": 0.002, "node": "top_a", "end": 0.003},
@@ -97,13 +99,15 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
                   "impulse": [0.25, 6280.5, -3.5]},
     "momentum_error": 1e-13, "penetration_max": 0.0625,
     "energy": {"in": 25700, "kinetic": 101, "potential": 102, "strain": 103, "fracture": 104,
-               "friction": 105, "contact": 106, "numerical": -0.125, "joint": 107},
+               "friction": 105, "contact": 106, "numerical": -0.125, "joint": 107,
+               "damping": 108},
     "projectiles": [
       {"name": "ball", "hit": true, "perforated": false, "speed_before": 10.5,
        "residual_speed": 3.25, "ballistic_speed": 9.75, "contact_force": 2.5e6}],
     "solver": {"name": "bullet", "joint_solver": "nncg", "iterations": 200, "warm_start": true,
-               "step": 0.0078125, "fallbacks": 9},
-    "solves": {"full": 0, "update": 0, "skipped": 0}, "hash": "00ab0000000000cd",
+               "step": 0.0078125, "fallbacks": 9,
+               "residual": 1e-12},
+    "solves": {"full": 11, "update": 12, "skipped": 13}, "hash": "00ab0000000000cd",
     "skipped": {"body_steps_asleep": 9000, "joint_steps_not_read": 8000,
                 "poses_not_recorded": 210000},
     "warnings": ["a \"quoted\" word"],
@@ -114,7 +118,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
 
 TEST(CollapseReport, EveryBrokenJointIsCountedInItsMode) {
   CollapseResult result;
-  constexpr std::size_t kOften[] = {5, 1, 4, 2, 3};
+  constexpr std::size_t kOften[] = {5, 1, 4, 2, 3, 6};
   for (std::size_t mode = 0; mode < kBreakModes.size(); ++mode)
     result.broken_joints.insert(result.broken_joints.end(), kOften[mode],
                                 {1, 0.5, 2, kBreakModes[mode], "", ""});

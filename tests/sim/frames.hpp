@@ -38,10 +38,11 @@ inline Frame empty_frame() {
   return frame;
 }
 
-/// posts × rows × storeys, 6 m bays, 3.5 m high, no walls; joined.
+/// posts × rows × storeys, 6 m bays, 3.5 m high, no walls; joined. Every part a rigid body.
 inline CollapseScene regular_scene(std::size_t posts, std::size_t rows, std::size_t storeys,
                                    const StoreyParams& storey = {}) {
   CollapseScene scene;
+  scene.simulation.solver = "bullet";
   scene.frame = empty_frame();
   RegularBuilding building;
   building.bays_x.assign(posts - 1, 6);

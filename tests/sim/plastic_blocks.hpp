@@ -27,7 +27,8 @@ inline Plastic plastic_blocks(const Section& s, double z) {
   return sum;
 }
 
-/// N/N_pl and M/M_pl of the strength where they are as `axial` : `moment`, by bisection of the axis.
+/// N/N_pl and M/M_pl of the strength where they are as `axial` : `moment`, by bisection of the
+/// axis.
 inline Plastic exact_strength(const Section& s, double axial, double moment) {
   double low = -s.height / 2, high = 0;  // from all tension to bending alone
   Plastic found;

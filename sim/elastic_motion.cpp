@@ -1,0 +1,747 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A building as what it is: pieces that hang together, elastic inside. The piece on the ground
+// stands still in the world and rings, when something happens to it, in the frame solver alone
+// (trapezoidal rule: Newmark's method with 1/4, 1/2, here without accelerations, so that it starts
+// right after a break). What comes loose is one rigid body each, whose inner forces follow from its
+// contacts by inertia relief.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "fracture/support_graph.hpp"
+#include "sim/frame_motion.hpp"
+#include "sim/frame_solver.hpp"
+#include "sim/part_pose.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr std::uint32_t kStanding = 0xFFFFFFFEu, kGone = 0xFFFFFFFFu;  ///< instead of a piece
+/// A frame rings no more when its kinetic energy stays below this share of the strain energy.
+constexpr double kQuietShare = 1e-10;
+constexpr double kQuietAfter = 0.25;  // s
+constexpr double kNoForce = 1;        // N: contacts below it are over
+
+FrameSolverParams solver_params(const CollapseScene& scene) {
+  FrameSolverParams params;
+  params.p_delta = scene.simulation.p_delta;
+  params.slabs = scene.simulation.diaphragms ? "diaphragm" : "load";
+  return params;
+}
+/// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
+FrameSolverParams dynamic_params(const CollapseScene& scene) {
+  FrameSolverParams params = solver_params(scene);
+  params.p_delta = false;
+  const double dt = scene.simulation.step;
+  params.stiffness = 1 + 2 / dt * scene.simulation.damping_stiffness;
+  params.mass = 4 / (dt * dt) + 2 / dt * scene.simulation.damping_mass;
+  return params;
+}
+
+class ElasticMotion final : public FrameMotion {
+ public:
+  ElasticMotion(const CollapseScene& scene, RigidWorld& world,
+                const std::vector<PartSolid>& solids);
+  void settle(const Progress& progress) override;
+  void follow(double now, double dt, bool ends_step) override;
+  JointLoad load(std::uint32_t joint) const override;
+  bool is_live(std::uint32_t joint) const override;
+  void break_joint(std::uint32_t joint, bool bears_on) override;
+  bool redistributes() const override { return true; }
+  bool settle_breaks() override;
+  std::vector<std::uint32_t> unheld_joints() const override;
+  void rejoin(std::span<const std::uint32_t> joints) override;
+  void remove_part(std::uint32_t part) override;
+  void add_load(double more) override;
+  Pose pose(std::uint32_t part) const override;
+  bool is_moving(std::uint32_t part) const override;
+  std::uint32_t part_of(BodyId body, std::uint32_t prism) const override;
+  double sag(std::uint32_t member) const override;
+  std::vector<SupportReaction> supports() const override { return supports_; }
+  double joint_gap(std::uint32_t) const override { return 0; }
+  std::uint64_t bodies() const override;
+  double kinetic() const override;
+  double strain() const override;
+  double potential() const override;
+  double baseline() const override { return baseline_; }
+  MotionLosses losses() const override { return losses_; }
+  double given() const override { return given_; }
+  SolveCounts solves() const override;
+  double residual() const override { return residual_; }
+
+ private:
+  /// What hangs together and moves.
+  struct Piece {
+    BodyId body = kNoBody;
+    std::vector<std::uint32_t> parts;
+    bool loaded_anew = false;
+  };
+  /// Force of what touches a part, and where; the part's own undeformed place.
+  struct Touch {
+    Vec3 impulse, moment;  ///< since the last step ended, about the origin
+    double size = 0;       ///< sum of the impulses' sizes
+    Vec3 weighted;         ///< their places, by size
+    Vec3 force, point;     ///< mean over the load time
+    bool is_active = false;
+  };
+  void list_joints();
+  void add_collider(std::uint32_t part);
+  void note_contacts();
+  void touch(std::uint32_t part, Vec3 point, Vec3 impulse);
+  bool update_touches(double dt);
+  void solve_standing();
+  void account_for_step(const std::vector<double>& w, const FrameLoads& now);
+  void wake();
+  void fall_quiet(double dt);
+  FrameLoads loads(bool of_pieces) const;
+  void solve_static();
+  double mass_of(std::uint32_t part) const;
+  BodyParams body_of(const std::vector<std::uint32_t>& parts) const;
+  Vec3 node_velocity(std::uint32_t node) const;
+  Vec3 part_velocity(std::uint32_t part) const;
+  void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
+  void add_piece(std::vector<std::uint32_t> parts, BodyParams body);
+  void detach(std::vector<std::uint32_t> parts);
+  std::vector<std::vector<std::uint32_t>> components(
+      const std::vector<std::uint32_t>& parts) const;
+  void split(std::uint32_t piece);
+  double frame_energy() const;
+  Vec3 gravity() const;
+
+  const CollapseScene& scene_;
+  const Frame& frame_;
+  RigidWorld& world_;
+  const std::vector<PartSolid>& solids_;
+  std::unique_ptr<FrameSolver> static_;
+  std::unique_ptr<FrameSolver> dynamic_;  ///< made when the frame rings first
+  SupportGraph graph_;
+  std::vector<std::uint8_t> intact_;
+  std::vector<std::vector<std::uint32_t>> joints_of_;  ///< by part
+  std::vector<std::uint32_t> piece_of_;                ///< by part
+  std::vector<BodyId> collider_of_;                    ///< by part
+  std::vector<std::vector<std::uint32_t>> parts_of_body_;  ///< by BodyId: prism → part
+  std::vector<Piece> pieces_;
+  std::vector<Touch> touches_;                         ///< by part
+  std::vector<double> u_, v_, f_, scratch_, product_;  ///< of the standing frame, when it rings
+  std::vector<std::uint32_t> broken_;                  ///< since breaks were settled
+  std::vector<std::array<std::uint32_t, 2>> apart_;    ///< parts that bear on each other no more
+  std::vector<SupportReaction> supports_;
+  double live_ = 0;        ///< added, N/m²
+  double now_ = 0, since_step_ = 0, quiet_for_ = 0;
+  bool rings_ = false, loads_changed_ = false;
+  std::uint64_t serial_ = 0, skipped_ = 0;
+  double baseline_ = 0, given_ = 0, start_energy_ = 0;
+  MotionLosses losses_;
+  double residual_ = 0;
+};
+
+std::vector<Bond> bonds_of(const Frame& frame) {
+  std::vector<Bond> bonds;
+  for (const FrameJoint& joint : frame.joints)
+    bonds.push_back({joint.a, joint.b == kNoPart ? kWorld : joint.b, 1, {}, {}});
+  return bonds;
+}
+
+ElasticMotion::ElasticMotion(const CollapseScene& scene, RigidWorld& world,
+                             const std::vector<PartSolid>& solids)
+    : scene_(scene),
+      frame_(scene.frame),
+      world_(world),
+      solids_(solids),
+      static_(std::make_unique<FrameSolver>(scene.frame, solver_params(scene))),
+      graph_(scene.frame.part_count(), bonds_of(scene.frame)),
+      intact_(scene.frame.joints.size(), 1),
+      joints_of_(scene.frame.part_count()),
+      piece_of_(scene.frame.part_count(), kStanding),
+      collider_of_(scene.frame.part_count(), kNoBody),
+      touches_(scene.frame.part_count()) {
+  list_joints();
+  for (std::uint32_t part = 0; part < frame_.part_count(); ++part) add_collider(part);
+}
+
+void ElasticMotion::list_joints() {
+  for (std::vector<std::uint32_t>& list : joints_of_) list.clear();
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
+    joints_of_[frame_.joints[j].a].push_back(j);
+    if (frame_.joints[j].b != kNoPart) joints_of_[frame_.joints[j].b].push_back(j);
+  }
+}
+
+void ElasticMotion::add_collider(std::uint32_t part) {
+  const Prism prism{solids_[part].hull, solids_[part].half_length};
+  const BodyId body = world_.add_static(pose_of(solids_[part]), {&prism, 1},
+                                        surface_of(frame_, part), kStandingOrder + part);
+  collider_of_[part] = body;
+  parts_of_body_.resize(body + 1);
+  parts_of_body_[body] = {part};
+}
+
+Vec3 ElasticMotion::gravity() const {
+  const Vec3 weight{0, -scene_.simulation.gravity, 0};
+  const GroundMotion& motion = scene_.scenario.ground_motion;
+  return motion.times.empty() || now_ <= 0 ? weight : weight - motion.at(now_);
+}
+
+FrameLoads ElasticMotion::loads(bool of_pieces) const {
+  FrameLoads result;
+  result.gravity = gravity();
+  if (live_ > 0) result.live.assign(frame_.slabs.size(), live_);
+  for (std::uint32_t part = 0; part < touches_.size(); ++part) {
+    const bool is_free = piece_of_[part] < pieces_.size();
+    if (touches_[part].is_active && (of_pieces || !is_free))
+      result.contacts.push_back({part, touches_[part].point, touches_[part].force});
+  }
+  if (!of_pieces) return result;
+  for (const Piece& piece : pieces_) {
+    if (piece.body == kNoBody || piece.parts.size() < 2) continue;
+    const Quaternion back = conjugate(world_.pose(piece.body).rotation);
+    result.spins.push_back(
+        {piece.parts[0], rotate(back, world_.angular_velocity(piece.body))});
+  }
+  return result;
+}
+
+/// The frame's elastic state under its weight; nothing moves.
+void ElasticMotion::settle(const Progress&) {
+  solve_static();
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
+    if (frame_.joints[j].b != kNoPart) continue;
+    supports_.push_back(
+        {frame_.joints[j].node, static_->reaction(j), static_->reaction_moment(j)});
+  }
+  start_energy_ = static_->strain_energy();
+}
+
+void ElasticMotion::solve_static() {
+  static_->solve(loads(true));
+  residual_ = std::max(residual_, static_->residual());
+  loads_changed_ = true;
+}
+
+// ---- contacts --------------------------------------------------------------------------------
+
+std::uint32_t ElasticMotion::part_of(BodyId body, std::uint32_t prism) const {
+  if (body >= parts_of_body_.size() || parts_of_body_[body].empty()) return kNoPart;
+  return parts_of_body_[body][prism];
+}
+
+void ElasticMotion::note_contacts() {
+  for (const Contact& contact : world_.contacts()) {
+    const Vec3 on_a = contact.impulse * contact.normal + contact.tangential;
+    if (const std::uint32_t part = part_of(contact.a, contact.part_a); part != kNoPart)
+      touch(part, contact.point, on_a);
+    if (const std::uint32_t part = part_of(contact.b, contact.part_b); part != kNoPart)
+      touch(part, contact.point, -1.0 * on_a);
+  }
+}
+
+/// Point and impulse are turned back to where the part stood.
+void ElasticMotion::touch(std::uint32_t part, Vec3 point, Vec3 impulse) {
+  if (piece_of_[part] < pieces_.size()) {
+    const Pose back = inverse(world_.pose(pieces_[piece_of_[part]].body));
+    point = back * point;
+    impulse = rotate(back.rotation, impulse);
+  }
+  Touch& touch = touches_[part];
+  const double size = length(impulse);
+  touch.impulse = touch.impulse + impulse;
+  touch.size += size;
+  touch.weighted = touch.weighted + size * point;
+}
+
+/// Forces follow the impulses by a first-order lag; true if any changed by more than asked for.
+bool ElasticMotion::update_touches(double dt) {
+  const double share = dt / (dt + scene_.rules.load_time);
+  bool changed = false;
+  for (std::uint32_t part = 0; part < touches_.size(); ++part) {
+    Touch& touch = touches_[part];
+    if (!touch.is_active && touch.size == 0) continue;
+    if (touch.size > 0) touch.point = (1 / touch.size) * touch.weighted;
+    const Vec3 force = touch.force + share * ((1 / dt) * touch.impulse - touch.force);
+    const double change = length(force - touch.force);
+    if (change > scene_.simulation.max_error * std::max(length(touch.force), kNoForce)) {
+      changed = true;
+      if (piece_of_[part] < pieces_.size()) pieces_[piece_of_[part]].loaded_anew = true;
+    }
+    touch.force = force;
+    touch.is_active = length(force) > kNoForce;
+    touch.impulse = touch.weighted = {};
+    touch.size = 0;
+  }
+  return changed;
+}
+
+void ElasticMotion::follow(double now, double dt, bool ends_step) {
+  now_ = now;
+  since_step_ += dt;
+  note_contacts();
+  loads_changed_ = false;
+  for (Piece& piece : pieces_) piece.loaded_anew = false;
+  if (!ends_step) return;
+  const bool changed = update_touches(since_step_);
+  bool standing_changed = !scene_.scenario.ground_motion.times.empty();
+  for (std::uint32_t part = 0; changed && part < touches_.size(); ++part)
+    standing_changed |= touches_[part].is_active && piece_of_[part] == kStanding;
+  if (standing_changed) wake();
+  const bool pieces_changed = std::ranges::any_of(pieces_, &Piece::loaded_anew);
+  if (pieces_changed) solve_static();
+  if (rings_) {
+    solve_standing();
+    fall_quiet(since_step_);
+  }
+  skipped_ += !rings_ && !pieces_changed;
+  since_step_ = 0;
+}
+
+// ---- the standing frame in time -----------------------------------------------------------------
+
+/// Starts from the state at rest.
+void ElasticMotion::wake() {
+  quiet_for_ = 0;
+  if (rings_ || scene_.simulation.quasi_static) {
+    rings_ = true;
+    return;
+  }
+  rings_ = true;
+  if (!dynamic_) {
+    dynamic_ = std::make_unique<FrameSolver>(frame_, dynamic_params(scene_));
+    std::vector<std::uint32_t> gone, broken;
+    for (std::uint32_t part = 0; part < piece_of_.size(); ++part)
+      if (piece_of_[part] != kStanding) gone.push_back(part);
+    for (std::uint32_t j = 0; j < intact_.size(); ++j)
+      if (intact_[j] == 0) broken.push_back(j);
+    if (!broken.empty()) dynamic_->break_joints(broken);
+    if (!gone.empty()) dynamic_->remove_parts(gone);
+    v_.assign(dynamic_->freedoms(), 0);
+    f_.resize(v_.size());
+    scratch_.resize(v_.size());
+    product_.resize(v_.size());
+  }
+  const std::span<const double> rest = static_->displacements();
+  u_.assign(rest.begin(), rest.end());
+  std::ranges::fill(v_, 0);
+  dynamic_->load_vector(loads(false), f_);
+}
+
+/// K* w = f₀ + f₁ − 2 K u₀ + (4/dt) M v₀, u₁ = u₀ + w, v₁ = (2/dt) w − v₀ with the loads at both ends:
+/// the trapezoidal rule on M v' = f − K u − C v, u' = v. Damping is in K* alone.
+void ElasticMotion::solve_standing() {
+  loads_changed_ = true;
+  if (scene_.simulation.quasi_static) {
+    solve_static();
+    return;
+  }
+  const double dt = scene_.simulation.step;
+  const FrameLoads now = loads(false);
+  std::vector<double>& next = scratch_;
+  dynamic_->load_vector(now, next);
+  for (std::size_t i = 0; i < next.size(); ++i) std::swap(f_[i], next[i]), next[i] += f_[i];
+  dynamic_->stiffness_times(u_, product_);
+  for (std::size_t i = 0; i < next.size(); ++i) next[i] -= 2 * product_[i];
+  dynamic_->mass_times(v_, product_);
+  for (std::size_t i = 0; i < next.size(); ++i) next[i] += 4 / dt * product_[i];
+  dynamic_->solve_system(next, product_);
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    u_[i] += product_[i];
+    v_[i] = 2 / dt * product_[i] - v_[i];
+  }
+  account_for_step(product_, now);
+  dynamic_->set_displacements(u_, now);
+}
+
+/// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt; contacts give the frame f·w, which is no loss.
+void ElasticMotion::account_for_step(const std::vector<double>& w, const FrameLoads& now) {
+  const double dt = scene_.simulation.step;
+  const auto dot_with = [&](const std::vector<double>& y) {
+    double sum = 0;
+    for (std::size_t i = 0; i < w.size(); ++i) sum += w[i] * y[i];
+    return sum;
+  };
+  std::vector<double>& y = scratch_;
+  if (scene_.simulation.damping_mass > 0) {
+    dynamic_->mass_times(w, y);
+    losses_.damping += scene_.simulation.damping_mass / dt * dot_with(y);
+  }
+  if (scene_.simulation.damping_stiffness > 0) {
+    dynamic_->stiffness_times(w, y);
+    losses_.damping += scene_.simulation.damping_stiffness / dt * dot_with(y);
+  }
+  if (now.contacts.empty()) return;
+  FrameLoads contacts;
+  contacts.gravity = {};
+  contacts.contacts = now.contacts;
+  dynamic_->load_vector(contacts, y);
+  losses_.contact -= dot_with(y);
+}
+
+void ElasticMotion::fall_quiet(double dt) {
+  if (!scene_.simulation.sleep || !scene_.scenario.ground_motion.times.empty()) return;
+  const bool is_quiet =
+      scene_.simulation.quasi_static || kinetic() <= kQuietShare * dynamic_->strain_energy();
+  quiet_for_ = is_quiet ? quiet_for_ + dt : 0;
+  if (quiet_for_ < kQuietAfter) return;
+  losses_.damping += kinetic();
+  solve_static();
+  rings_ = false;
+}
+
+// ---- joints --------------------------------------------------------------------------------------
+
+JointLoad ElasticMotion::load(std::uint32_t j) const {
+  const bool stands = piece_of_[frame_.joints[j].a] == kStanding;
+  return stands && rings_ && !scene_.simulation.quasi_static ? dynamic_->joint_load(j)
+                                                        : static_->joint_load(j);
+}
+
+bool ElasticMotion::is_live(std::uint32_t j) const {
+  return loads_changed_ && piece_of_[frame_.joints[j].a] != kGone;
+}
+
+void ElasticMotion::break_joint(std::uint32_t j, bool bears_on) {
+  const FrameJoint& joint = frame_.joints[j];
+  intact_[j] = 0;
+  broken_.push_back(j);
+  if (!bears_on && joint.b != kNoPart) apart_.push_back({joint.a, joint.b});
+}
+
+double ElasticMotion::frame_energy() const {
+  return kinetic() + strain() + potential();
+}
+
+/// The elastic state goes on with the joints gone: displacements are continuous, forces are not.
+bool ElasticMotion::settle_breaks() {
+  if (broken_.empty()) return false;
+  std::ranges::sort(broken_);
+  const bool of_standing = std::ranges::any_of(
+      broken_, [&](std::uint32_t j) { return piece_of_[frame_.joints[j].a] == kStanding; });
+  const double before = frame_energy();
+  const double in_world = world_.kinetic_energy();
+  if (of_standing) wake();
+  static_->break_joints(broken_);
+  if (dynamic_) dynamic_->break_joints(broken_);
+  std::vector<std::uint32_t> of_graph, split_pieces;
+  for (const std::uint32_t j : broken_) {
+    const std::uint32_t piece = piece_of_[frame_.joints[j].a];
+    if (piece < pieces_.size()) split_pieces.push_back(piece);
+  }
+  for (SupportGraph::Island& island : graph_.break_bonds(broken_).islands) {
+    std::erase_if(island.chunks, [&](std::uint32_t part) { return piece_of_[part] != kStanding; });
+    if (!island.chunks.empty()) detach(std::move(island.chunks));
+  }
+  std::ranges::sort(split_pieces);
+  split_pieces.erase(std::ranges::unique(split_pieces).begin(), split_pieces.end());
+  for (const std::uint32_t piece : split_pieces) split(piece);
+  broken_.clear();
+  for (const auto& [a, b] : apart_) {
+    const auto body = [&](std::uint32_t part) {
+      return piece_of_[part] < pieces_.size() ? pieces_[piece_of_[part]].body : collider_of_[part];
+    };
+    if (body(a) != kNoBody && body(b) != kNoBody && body(a) != body(b))
+      world_.separate(body(a), body(b));
+  }
+  apart_.clear();
+  static_->solve(loads(true));
+  if (rings_ && dynamic_) {
+    const FrameLoads now = loads(false);
+    dynamic_->load_vector(now, f_);
+    dynamic_->set_displacements(u_, now);
+  }
+  loads_changed_ = true;
+  losses_.fracture += before - frame_energy() - (world_.kinetic_energy() - in_world);
+  return true;
+}
+
+/// Joints of parts that what is left of their joints cannot hold.
+std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
+  std::vector<std::uint32_t> joints;
+  for (const std::uint32_t part : static_->loose_parts()) {
+    if (piece_of_[part] == kGone) continue;
+    for (const std::uint32_t j : joints_of_[part])
+      if (intact_[j] != 0) joints.push_back(j);
+  }
+  return joints;
+}
+
+// ---- pieces --------------------------------------------------------------------------------------
+
+double ElasticMotion::mass_of(std::uint32_t part) const {
+  const std::uint32_t first = frame_.slab_part(0), end = frame_.wall_part(0);
+  const bool is_slab = part >= first && part < end;
+  const double gravity = scene_.simulation.gravity;
+  const double added =
+      is_slab && live_ > 0 ? live_ * slab_area(frame_, part - first) / gravity : 0;
+  return solids_[part].mass + added;
+}
+
+/// Mass, centroid and inertia of parts where they stood.
+BodyParams ElasticMotion::body_of(const std::vector<std::uint32_t>& parts) const {
+  BodyParams body;
+  body.mass = 0;
+  std::uint32_t heaviest = parts[0];
+  for (const std::uint32_t part : parts) {
+    const double mass = mass_of(part);
+    body.mass += mass;
+    body.centroid = body.centroid + mass * solids_[part].centre;
+    if (mass > mass_of(heaviest)) heaviest = part;
+  }
+  body.centroid = (1 / body.mass) * body.centroid;
+  for (const std::uint32_t part : parts) {
+    const double mass = mass_of(part), share = mass / solids_[part].mass;
+    const SymMat3 own = rotated(solids_[part].axes, solids_[part].inertia);
+    const Vec3 r = solids_[part].centre - body.centroid;
+    SymMat3& sum = body.inertia;
+    sum.xx += share * own.xx + mass * (r.y * r.y + r.z * r.z);
+    sum.yy += share * own.yy + mass * (r.x * r.x + r.z * r.z);
+    sum.zz += share * own.zz + mass * (r.x * r.x + r.y * r.y);
+    sum.xy += share * own.xy - mass * r.x * r.y;
+    sum.xz += share * own.xz - mass * r.x * r.z;
+    sum.yz += share * own.yz - mass * r.y * r.z;
+  }
+  body.surface = surface_of(frame_, heaviest);
+  return body;
+}
+
+Vec3 ElasticMotion::node_velocity(std::uint32_t node) const {
+  const std::size_t first = dynamic_->freedom(node);
+  return first == FrameSolver::kHeld ? Vec3{} : Vec3{v_[first], v_[first + 1], v_[first + 2]};
+}
+
+/// Mean of the velocities of its corners or ends.
+Vec3 ElasticMotion::part_velocity(std::uint32_t part) const {
+  if (!rings_ || !dynamic_) return {};
+  const auto members = static_cast<std::uint32_t>(frame_.members.size());
+  if (part < members)
+    return 0.5 * (node_velocity(frame_.members[part].from) +
+                  node_velocity(frame_.members[part].to));
+  const auto& nodes = part < frame_.wall_part(0) ? frame_.slabs[part - members].nodes
+                                                 : frame_.walls[part - frame_.wall_part(0)].nodes;
+  Vec3 sum;
+  for (const std::uint32_t node : nodes) sum = sum + node_velocity(node);
+  return 0.25 * sum;
+}
+
+/// The rigid motion with the momentum and angular momentum of the parts.
+void ElasticMotion::take_frames_motion(BodyParams& body,
+                                       const std::vector<std::uint32_t>& parts) const {
+  Vec3 momentum, angular;
+  for (const std::uint32_t part : parts) {
+    const Vec3 p = mass_of(part) * part_velocity(part);
+    momentum = momentum + p;
+    angular = angular + cross(solids_[part].centre - body.centroid, p);
+  }
+  body.velocity = (1 / body.mass) * momentum;
+  body.angular_velocity = inverse(body.inertia) * angular;
+}
+
+void ElasticMotion::add_piece(std::vector<std::uint32_t> parts, BodyParams body) {
+  std::vector<Prism> prisms;
+  for (const std::uint32_t part : parts)
+    prisms.push_back({solids_[part].hull, solids_[part].half_length, solids_[part].centre,
+                      solids_[part].axes});
+  body.order = kMovingOrder + serial_++;
+  const auto index = static_cast<std::uint32_t>(pieces_.size());
+  Piece piece;
+  piece.body = world_.add_body(body, prisms);
+  for (const std::uint32_t part : parts) piece_of_[part] = index;
+  parts_of_body_.resize(piece.body + 1);
+  parts_of_body_[piece.body] = parts;
+  piece.parts = std::move(parts);
+  piece.loaded_anew = true;
+  pieces_.push_back(std::move(piece));
+}
+
+/// What no longer hangs on the ground.
+void ElasticMotion::detach(std::vector<std::uint32_t> parts) {
+  BodyParams body = body_of(parts);
+  take_frames_motion(body, parts);
+  baseline_ += body.mass * scene_.simulation.gravity * body.centroid.y;
+  for (const std::uint32_t part : parts) {
+    parts_of_body_[collider_of_[part]].clear();
+    world_.remove(collider_of_[part]);
+    collider_of_[part] = kNoBody;
+    touches_[part] = {};
+  }
+  if (dynamic_) dynamic_->remove_parts(parts);
+  add_piece(std::move(parts), body);
+}
+
+/// Parts that intact joints connect, piece by piece.
+std::vector<std::vector<std::uint32_t>> ElasticMotion::components(
+    const std::vector<std::uint32_t>& parts) const {
+  std::vector<std::vector<std::uint32_t>> found;
+  std::vector<std::uint32_t> sorted(parts);
+  std::ranges::sort(sorted);
+  std::vector<std::uint8_t> reached(sorted.size(), 0);
+  const auto place = [&](std::uint32_t part) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(sorted, part) - sorted.begin());
+  };
+  for (const std::uint32_t seed : sorted) {
+    if (reached[place(seed)] != 0) continue;
+    std::vector<std::uint32_t> group{seed};
+    reached[place(seed)] = 1;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      for (const std::uint32_t j : joints_of_[group[i]]) {
+        const FrameJoint& joint = frame_.joints[j];
+        if (intact_[j] == 0 || joint.b == kNoPart) continue;
+        const std::uint32_t other = joint.a == group[i] ? joint.b : joint.a;
+        if (reached[place(other)] != 0) continue;
+        reached[place(other)] = 1;
+        group.push_back(other);
+      }
+    }
+    std::ranges::sort(group);
+    found.push_back(std::move(group));
+  }
+  return found;
+}
+
+/// A piece in which joints broke: its parts go on with the motion it had.
+void ElasticMotion::split(std::uint32_t index) {
+  std::vector<std::vector<std::uint32_t>> groups = components(pieces_[index].parts);
+  if (groups.size() < 2) return;
+  const BodyId old = pieces_[index].body;
+  const Pose pose = world_.pose(old);
+  const Vec3 centre = world_.centre(old), velocity = world_.velocity(old),
+             spin = world_.angular_velocity(old);
+  parts_of_body_[old].clear();
+  world_.remove(old);
+  pieces_[index].body = kNoBody;
+  pieces_[index].parts.clear();
+  for (std::vector<std::uint32_t>& group : groups) {
+    BodyParams body = body_of(group);
+    body.pose = pose;
+    body.angular_velocity = spin;
+    body.velocity = velocity + cross(spin, pose * body.centroid - centre);
+    add_piece(std::move(group), body);
+  }
+}
+
+/// Happens at time 0, at rest: the solver is made anew, its state is the same.
+void ElasticMotion::rejoin(std::span<const std::uint32_t> joints) {
+  if (joints.empty()) return;
+  static_ = std::make_unique<FrameSolver>(frame_, solver_params(scene_));
+  dynamic_.reset();
+  rings_ = false;
+  graph_ = SupportGraph(frame_.part_count(), bonds_of(frame_));
+  list_joints();
+  std::vector<std::uint32_t> broken;
+  for (std::uint32_t j = 0; j < intact_.size(); ++j)
+    if (intact_[j] == 0) broken.push_back(j);
+  if (!broken.empty()) {
+    static_->break_joints(broken);
+    graph_.break_bonds(broken);
+  }
+  solve_static();
+}
+
+void ElasticMotion::remove_part(std::uint32_t part) {
+  const std::uint32_t index = piece_of_[part];
+  assert(index < pieces_.size() && pieces_[index].parts.size() == 1 && "its joints are broken");
+  const BodyId body = pieces_[index].body;
+  baseline_ -= mass_of(part) * scene_.simulation.gravity * solids_[part].centre.y;
+  const double before = world_.kinetic_energy();
+  parts_of_body_[body].clear();
+  world_.remove(body);
+  given_ += world_.kinetic_energy() - before;
+  pieces_[index].body = kNoBody;
+  pieces_[index].parts.clear();
+  piece_of_[part] = kGone;
+  static_->remove_parts({&part, 1});
+}
+
+/// Free pieces grow heavier too.
+void ElasticMotion::add_load(double more) {
+  const double before = world_.kinetic_energy();
+  live_ += more;
+  for (const Piece& piece : pieces_) {
+    double area = 0, mass = 0;
+    for (const std::uint32_t part : piece.parts) {
+      mass += mass_of(part);
+      if (part >= frame_.slab_part(0) && part < frame_.wall_part(0))
+        area += slab_area(frame_, part - frame_.slab_part(0));
+    }
+    if (area == 0) continue;
+    baseline_ += more * area * world_.centre(piece.body).y;
+    world_.set_mass(piece.body, mass);
+  }
+  given_ += world_.kinetic_energy() - before;
+  wake();
+}
+
+Pose ElasticMotion::pose(std::uint32_t part) const {
+  const Pose standing = pose_of(solids_[part]);
+  const std::uint32_t piece = piece_of_[part];
+  return piece < pieces_.size() ? world_.pose(pieces_[piece].body) * standing : standing;
+}
+
+bool ElasticMotion::is_moving(std::uint32_t part) const {
+  const std::uint32_t piece = piece_of_[part];
+  return piece < pieces_.size() && world_.is_awake(pieces_[piece].body);
+}
+
+double ElasticMotion::sag(std::uint32_t member) const {
+  const std::uint32_t node = frame_.members[member].to;
+  if (piece_of_[member] != kStanding) {
+    const Vec3 stood = frame_.nodes[node].position;
+    return piece_of_[member] < pieces_.size()
+               ? stood.y - (world_.pose(pieces_[piece_of_[member]].body) * stood).y
+               : 0;
+  }
+  return -static_->displacement(node).y;
+}
+
+std::uint64_t ElasticMotion::bodies() const {
+  std::uint64_t count = 0;
+  for (const Piece& piece : pieces_) count += piece.body != kNoBody;
+  return count;
+}
+
+// ---- energy ----------------------------------------------------------------------------------------
+
+double ElasticMotion::kinetic() const {
+  if (!rings_ || !dynamic_) return 0;
+  std::vector<double> momentum(v_.size());
+  dynamic_->mass_times(v_, momentum);
+  double twice = 0;
+  for (std::size_t i = 0; i < v_.size(); ++i) twice += v_[i] * momentum[i];
+  return twice / 2;
+}
+
+double ElasticMotion::strain() const {
+  return rings_ && dynamic_ ? dynamic_->strain_energy() : static_->strain_energy();
+}
+
+/// Of the weight on the frame's displacements.
+double ElasticMotion::potential() const {
+  const FrameSolver& solver = rings_ && dynamic_ ? *dynamic_ : *static_;
+  std::vector<double> weight(solver.freedoms());
+  FrameLoads own;
+  own.gravity = {0, -scene_.simulation.gravity, 0};
+  if (live_ > 0) own.live.assign(frame_.slabs.size(), live_);
+  solver.load_vector(own, weight);
+  const std::span<const double> u = solver.displacements();
+  double work = 0;
+  for (std::size_t i = 0; i < weight.size(); ++i) work += weight[i] * u[i];
+  return -work;
+}
+
+SolveCounts ElasticMotion::solves() const {
+  SolveCounts counts;
+  for (const FrameSolver* solver : {static_.get(), dynamic_.get()}) {
+    if (solver == nullptr) continue;
+    const FactorCounts own = solver->counts();
+    counts.full += own.full;
+    counts.update += own.partial + own.low_rank;
+  }
+  counts.skipped = skipped_;
+  return counts;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameMotion> elastic_motion(const CollapseScene& scene, RigidWorld& world,
+                                            const std::vector<PartSolid>& solids) {
+  return std::make_unique<ElasticMotion>(scene, world, solids);
+}
+
+}  // namespace sunder

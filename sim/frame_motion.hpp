@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/collapse.hpp"
+#include "sim/rigid_world.hpp"
+
+namespace sunder {
+
+/// Keys of the contact order: projectiles, then what stands, then bodies, oldest first.
+constexpr std::uint64_t kBallOrder = std::uint64_t{1} << 60;
+constexpr std::uint64_t kStandingOrder = std::uint64_t{2} << 60;
+constexpr std::uint64_t kMovingOrder = std::uint64_t{3} << 60;
+
+/// Energy that a building's motion accounts for itself, J; positive: lost by what moves.
+struct MotionLosses {
+  double joint = 0;     ///< in rigid joints
+  double fracture = 0;  ///< what was stored elastically where something broke
+  double damping = 0;   ///< of the ringing frame
+  double contact = 0;   ///< less (or more) than the world has booked for contacts
+};
+
+/// How the parts of a building move and what its joints carry: the solver. What breaks, and why, is
+/// decided by the run that owns it and the world.
+class FrameMotion {
+ public:
+  virtual ~FrameMotion() = default;
+
+  /// Takes up the weight, until time 0.
+  virtual void settle(const Progress& progress) = 0;
+  /// After a substep of the world that ended at `now`; the last of a step says so.
+  virtual void follow(double now, double dt, bool ends_step) = 0;
+  /// Load that a joint is judged by.
+  virtual JointLoad load(std::uint32_t joint) const = 0;
+  /// False: no load of this joint has changed since it was read last.
+  virtual bool is_live(std::uint32_t joint) const = 0;
+  /// Joints let go; unless `bears_on` their parts do not touch each other from now on either.
+  virtual void break_joint(std::uint32_t joint, bool bears_on) = 0;
+  /// Whether other joints take over at once what a broken one carried.
+  virtual bool redistributes() const = 0;
+  /// After all joints of a batch: what came loose starts to move. True if other loads followed.
+  virtual bool settle_breaks() = 0;
+  /// Joints that have to go too: what they hold has lost too many others to be in balance.
+  virtual std::vector<std::uint32_t> unheld_joints() const = 0;
+  /// The frame's joints with these numbers have another part b now.
+  virtual void rejoin(std::span<const std::uint32_t> joints) = 0;
+  virtual void remove_part(std::uint32_t part) = 0;
+  /// More live load on every slab, N/m².
+  virtual void add_load(double more) = 0;
+
+  /// Of the part's own frame (see PartSolid) now.
+  virtual Pose pose(std::uint32_t part) const = 0;
+  virtual bool is_moving(std::uint32_t part) const = 0;
+  /// kNoPart: the body is none of the building's.
+  virtual std::uint32_t part_of(BodyId body, std::uint32_t prism) const = 0;
+  virtual double sag(std::uint32_t member) const = 0;  ///< of the end of a member, m down
+  /// Mean force and torque of the ground at rest, per joint to the ground in order.
+  virtual std::vector<SupportReaction> supports() const = 0;
+  virtual double joint_gap(std::uint32_t joint) const = 0;
+  virtual std::uint64_t bodies() const = 0;
+
+  virtual double kinetic() const = 0;    ///< of what is not in the world, J
+  virtual double strain() const = 0;     ///< J
+  virtual double potential() const = 0;  ///< of what is not in the world, against standing, J
+  virtual double baseline() const = 0;   ///< potential of the world's bodies where they started, J
+  virtual MotionLosses losses() const = 0;
+  virtual double given() const = 0;      ///< energy that removed and added masses brought, J
+  virtual SolveCounts solves() const = 0;
+  virtual double residual() const = 0;  ///< of equilibrium, largest so far, relative
+};
+
+/// Every part a rigid body, every joint six equations: the solver "bullet".
+std::unique_ptr<FrameMotion> jointed_motion(const CollapseScene& scene, RigidWorld& world,
+                                            const std::vector<PartSolid>& solids);
+/// What hangs together is one piece, elastic inside; what hangs on the ground stands: "hybrid".
+std::unique_ptr<FrameMotion> elastic_motion(const CollapseScene& scene, RigidWorld& world,
+                                            const std::vector<PartSolid>& solids);
+
+}  // namespace sunder

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/block_factor.hpp"
+#include "sim/frame.hpp"
+
+namespace sunder {
+
+struct FrameSolverParams {
+  bool shear = true;  ///< Timoshenko; false: Euler–Bernoulli
+  bool p_delta =
+      false;  ///< second order: geometric stiffness of the axial forces at the last solve
+  /// How slabs take part: "load" (weight only, a quarter per edge as a line load) or "diaphragm"
+  /// (besides, two crossed bars per slab as stiff in its plane as its concrete in shear).
+  std::string slabs = "load";
+  /// Stiffness × this + mass × that is what is factored: {1, 0} for statics; Newmark asks for
+  /// others.
+  double stiffness = 1, mass = 0;
+};
+
+/// Loads besides the weight; world, on the undeformed frame.
+struct FrameLoads {
+  Vec3 gravity{0, -9.81, 0};  ///< on all masses, m/s² (with d'Alembert's forces of a moving frame)
+  struct OnPart {
+    std::uint32_t part = 0;
+    Vec3 point, force;  ///< world, N: a contact
+  };
+  std::vector<OnPart> contacts = {};
+  std::vector<double> live = {};  ///< added load per slab, N/m²; empty: none
+  /// A free piece that turns: its loads get what centrifugal forces and the acceleration that its
+  /// contacts and gravity give it (rigidly, by the model's own mass matrix) take away, so that they
+  /// balance. Pieces not named do not turn. Axes of the undeformed frame, rad/s.
+  struct Spin {
+    std::uint32_t part = 0;  ///< any of the piece
+    Vec3 angular_velocity;
+  };
+  std::vector<Spin> spins = {};
+};
+
+/// What is wrong with a structure that cannot carry.
+struct Mechanism {
+  std::uint32_t node = kNoPart;  ///< frame node where a pivot vanished
+  std::string what;              ///< names the node, its storey (height) and members
+};
+
+/// Elastic analysis of a frame whose joints break: small displacements, six freedoms per node.
+/// A member whose end joint broke hangs on its other end as a cantilever; a part without any joint
+/// is gone from the model. Pieces that hang together but not on the ground ("free") are held by a
+/// pin at one node, and their inertia balances their loads (inertia relief), so that it carries
+/// nothing, whatever its stiffness.
+class FrameSolver {
+ public:
+  /// Keeps a reference to the frame. Throws Error{input} naming member and storey for zero or
+  /// absurd stiffness, mechanisms.
+  explicit FrameSolver(const Frame& frame, const FrameSolverParams& params = {});
+  ~FrameSolver();
+  FrameSolver(const FrameSolver&) = delete;
+  FrameSolver& operator=(const FrameSolver&) = delete;
+
+  /// Takes joints away and updates the factor exactly: see BlockFactor.
+  void break_joints(std::span<const std::uint32_t> joints);
+  /// Parts leave the model altogether, with all their joints (they fell off, or were removed).
+  void remove_parts(std::span<const std::uint32_t> parts);
+  /// Parts that nothing in the model holds any more, not removed: members without joints or on one
+  /// hinge, slabs on less than three joints or on joints in line, walls on less than two (of the
+  /// ground floor: none). They take part in nothing. Ascending.
+  std::vector<std::uint32_t> loose_parts() const;
+  /// Where what is left moved without resistance; springs hold it. The loads there mean nothing.
+  std::vector<Mechanism> mechanisms() const;
+
+  /// Displacements, joint loads and reactions under these loads.
+  void solve(const FrameLoads& loads);
+  JointLoad joint_load(std::uint32_t joint) const;  ///< of an intact joint
+  Vec3 displacement(std::uint32_t node) const;      ///< m
+  Vec3 rotation(std::uint32_t node) const;          ///< rad
+  Vec3 reaction(std::uint32_t joint) const;  ///< of a joint to the ground, force on the part, N
+  Vec3 reaction_moment(std::uint32_t joint) const;  ///< about the node, N m
+  double axial(std::uint32_t member) const;         ///< mean, tension positive, N
+  /// |K u − f| / |f|, largest norm; printed in every report.
+  double residual() const;
+  /// What the pins of free pieces carry, largest, N or N m: 0 but for rounding.
+  double pin_force() const;
+  double strain_energy() const;  ///< ½ uᵀ K u, J
+  FactorCounts counts() const;
+
+  // For dynamics: vectors of six numbers per free node (`freedoms`), in an order of their own.
+  std::size_t freedoms() const;
+  /// The first of a node's six; kHeld: a support.
+  std::size_t freedom(std::uint32_t node) const;
+  static constexpr std::size_t kHeld = static_cast<std::size_t>(-1);
+  std::span<const double> displacements() const;
+  void set_displacements(std::span<const double> u, const FrameLoads& loads);  ///< then joint loads
+  void load_vector(const FrameLoads& loads, std::span<double> f) const;
+  void stiffness_times(std::span<const double> u, std::span<double> f) const;  ///< K u
+  void mass_times(std::span<const double> a, std::span<double> f) const;  ///< M a, all loads' mass
+  void solve_system(std::span<const double> f, std::span<double> u) const;  ///< factored matrix
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sunder

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of the static solver share.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/block_factor.hpp"
+#include "sim/frame_links.hpp"
+#include "sim/frame_solver.hpp"
+#include "sim/member_response.hpp"
+#include "sim/plate_support.hpp"
+
+namespace sunder {
+
+/// Acceleration that loads the masses of a piece (gravity less its own), linear in space.
+struct MassField {
+  Vec3 origin, value;       ///< m; m/s² at the origin
+  Vec3 acceleration, spin;  ///< angular, rad/s² and rad/s
+  Vec3 at(Vec3 point) const {
+    const Vec3 arm = point - origin;
+    return value - cross(acceleration, arm) - cross(spin, cross(spin, arm));
+  }
+  bool turns() const { return !(acceleration == Vec3{} && spin == Vec3{}); }
+};
+
+struct FrameSolver::Impl {
+  Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters);
+
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  /// elastic: an element of the stiffness. hanging: a rigid cantilever at its held end.
+  enum class Role : std::uint8_t { elastic, hanging, loose, removed };
+  struct PointMass {
+    std::uint32_t joint = 0;
+    double at = 0, mass = 0;  ///< m from the start, kg
+  };
+  /// What every solve reads; the rest is in arrays beside, by member.
+  struct Member {
+    Vec3 start;
+    MemberResponse response;     ///< of an elastic one; axes and length always
+    double mass = 0, polar = 0;  ///< its own, kg/m and kg m
+    double plate_mass = 0;       ///< of slabs and walls, kg/m
+    Role role = Role::loose;
+    int held_end = 0;                                 ///< of a hanging one
+    std::array<std::uint32_t, 2> node{kNone, kNone};  ///< solver nodes; FrameLinks' kFixed, kFree
+    Vec3 at(double along) const { return start + along * response.axes.x; }
+    bool present() const { return role == Role::elastic || role == Role::hanging; }
+  };
+  /// Two crossed bars in place of a slab, with their stiffness EA/L.
+  struct Diaphragm {
+    std::array<BlockChange, 2> bars{BlockChange{kNone, kNone, {}}, BlockChange{kNone, kNone, {}}};
+    std::array<double, 2> stiffness{};
+    bool active = false;
+  };
+  /// What holds together but not to the ground.
+  struct Piece {
+    std::uint32_t pin = kNone;  ///< its lowest solver node
+    double mass = 0;
+    Vec3 centre;
+    SymMat3 inertia;  ///< about the centre, world
+  };
+  /// Springs against a motion that nothing resists.
+  struct Restraint {
+    std::uint32_t node = kNone;
+    BlockChange block;
+  };
+
+  // frame_stiffness.cpp: what can be wrong, and what the members are.
+  void check() const;
+  void make_members();
+  void make_diaphragms();
+  Role role_of(std::uint32_t m, int& held_end) const;
+  Matrix12 mass_matrix(std::uint32_t m) const;
+  void renew(std::uint32_t m);  ///< role, element, stiffness from the links
+  void renew_in_factor(std::uint32_t m);
+  void put(const BlockChange& change);
+  void set_in_factor(BlockChange& now, const BlockChange& next);
+  void renew_diaphragm(std::uint32_t slab);
+  std::string where(std::uint32_t node) const;
+
+  // frame_changes.cpp: what changes as joints break.
+  void update(std::vector<std::uint32_t> members, std::vector<std::uint32_t> plates);
+  void renew_plate(std::uint32_t plate);
+  void lay_plate(const PlateSupport& plate, double sign);
+  void find_pieces();
+  void pin_pieces();
+  void restrain_rotations();
+  void refactor();
+
+  // frame_loads.cpp: from loads to nodal forces.
+  void collect(const FrameLoads& loads, std::span<double> f);
+  void add_load(std::uint32_t m, const BeamLoad& load);
+  void add_contacts(const FrameLoads& loads);
+  void add_contact_on_plate(std::uint32_t plate, const FrameLoads::OnPart& contact);
+  void add_point(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment);
+  void add_field(std::uint32_t m, const MassField& field);
+  void add_turning(std::uint32_t m, double line, const MassField& field);
+  double line_mass(std::uint32_t m) const;
+  void weigh_pieces();
+  void relieve_pieces();
+  void weigh_plates(const FrameLoads& loads);
+  std::uint32_t piece_of(const Member& member) const;
+
+  // frame_solver.cpp: breaking, and from displacements to forces.
+  void break_joints(std::span<const std::uint32_t> joints);
+  Twelve displacements_of(const Member& member, std::span<const double> motion) const;
+  Twelve end_force(std::uint32_t m, const Twelve& motion) const;
+  void add_diaphragm_shear(std::uint32_t slab);
+  void recover();
+  void iterate_second_order();
+  Vec3 displacement(std::uint32_t frame_node) const;
+  double axial(std::uint32_t m) const;
+  Vec3 through(std::uint32_t joint,
+               std::size_t first) const;  ///< force (0) or moment (3) on part a
+  template <class Apply>
+  void sum_members(std::span<const double> motion, std::span<double> result,
+                   const Apply& apply) const;
+
+  const Frame& frame;
+  const FrameSolverParams params;
+  FrameLinks links;
+  std::vector<Member> members;
+  std::vector<BeamElement> elements;                 ///< of the members
+  std::vector<std::vector<PointMass>> point_masses;  ///< of walls that hang, per member
+  std::vector<BlockChange> in_factor;                ///< per member
+  std::vector<double> axial_in_factor;               ///< N, of the geometric stiffness
+  std::vector<PlateSupport> plates;
+  std::vector<std::vector<std::uint32_t>> plates_on;  ///< per member
+  std::vector<Diaphragm> diaphragms;                  ///< per slab; none for "load"
+  std::vector<std::uint8_t> gone;                     ///< per part: removed
+  std::vector<std::uint32_t> piece_of_node;           ///< kNone: on the ground
+  std::vector<Piece> pieces;
+  std::vector<std::uint32_t> pinned;       ///< solver nodes, ascending
+  std::vector<Restraint> rotations, held;  ///< held: where a pivot vanished
+  double pin_stiffness = 0, pin_turn = 0;  ///< N/m, N m/rad
+  bool any_hinge = false;
+  std::optional<BlockFactor> factor;  ///< none without solver nodes
+  bool built = false;
+  std::vector<BlockChange> changes;       ///< not yet in the factor
+  std::vector<std::uint8_t> to_restrain;  ///< solver nodes whose members changed
+
+  // Of the last loads.
+  std::vector<double> live_line;       ///< kg/m that live loads add; empty: none
+  std::vector<Twelve> fixed, forces;   ///< per member: of the nodes on it, world
+  std::vector<MassField> fields;       ///< per piece; last: what stands on the ground
+  std::vector<JointLoad> plate_loads;  ///< per joint: force and torque on the carrier, world
+  std::vector<double> f, u;
+};
+
+}  // namespace sunder
