@@ -1,29 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/frame_world.hpp"
 
-#include <algorithm>
-#include <array>
+#include "sim/part_pose.hpp"
 
 namespace sunder {
 namespace {
 
 constexpr double kGravity = 9.81;
 constexpr Surface kSteel{0.3, 0.2};
-
-/// Each row is a multiple of the quaternion (x, y, z, w); the longest keeps all digits.
-Quaternion rotation_of(const Axes& r) {
-  const double xx = r.x.x, yy = r.y.y, zz = r.z.z;
-  const double xy = r.x.y + r.y.x, xz = r.z.x + r.x.z, yz = r.y.z + r.z.y;
-  const Vec3 turn{r.y.z - r.z.y, r.z.x - r.x.z, r.x.y - r.y.x};
-  const std::array<Quaternion, 4> rows{Quaternion{1 + xx - yy - zz, xy, xz, turn.x},
-                                       Quaternion{xy, 1 - xx + yy - zz, yz, turn.y},
-                                       Quaternion{xz, yz, 1 - xx - yy + zz, turn.z},
-                                       Quaternion{turn.x, turn.y, turn.z, 1 + xx + yy + zz}};
-  const auto square = [](const Quaternion& q) {
-    return q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  };
-  return normalised(*std::ranges::max_element(rows, {}, square));
-}
 
 class RigidFrame final : public FrameWorld {
  public:
@@ -33,7 +17,7 @@ class RigidFrame final : public FrameWorld {
       BodyParams body;
       body.mass = part.mass;
       body.inertia = part.inertia;
-      body.pose = {part.centre, rotation_of(part.axes)};
+      body.pose = pose_of(part);
       body.surface = kSteel;
       body.order = bodies_.size() + 1;
       const Prism prism{part.hull, part.half_length};

@@ -55,6 +55,9 @@ void print_damage(const Frame& frame, const CollapseResult& r) {
     print_break(frame, r.broken_joints[i]);
   if (r.broken_joints.size() > kShown)
     std::fprintf(stderr, "  … and %zu more\n", r.broken_joints.size() - kShown);
+  if (!r.yielded_joints.empty())
+    std::fprintf(stderr, "%zu joints bent, by %.3g rad at most\n", r.yielded_joints.size(),
+                 std::ranges::max_element(r.yielded_joints, {}, &JointYield::rotation)->rotation);
   if (r.first_failure_load > 0)
     std::fprintf(stderr, "first failure at a live load of %.4g kN/m²\n",
                  1e-3 * r.first_failure_load);

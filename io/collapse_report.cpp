@@ -21,6 +21,17 @@ void write_joints(JsonLines& json, const Frame& frame, const CollapseResult& r) 
     json.close();
   }
   json.close();
+  json.open("yielded_joints", '[');
+  for (const JointYield& each : r.yielded_joints) {
+    assert(each.joint < frame.joints.size());
+    json.open('{');
+    json.text("joint", frame.joints[each.joint].name);
+    json.number("time", each.time);
+    json.number("utilisation", each.utilisation);
+    json.number("rotation", each.rotation);
+    json.close();
+  }
+  json.close();
   const auto counts = count_by_mode(r);
   json.open("broken_by", '{');
   for (std::size_t i = 0; i < counts.size(); ++i) json.count(kBreakModes[i], counts[i]);
@@ -71,6 +82,7 @@ void write_balance(JsonLines& json, const CollapseResult& r) {
   write_ledger(json, r.energy_in, r.energy);
   json.number("joint", r.joint_work);
   json.number("damping", r.damping);
+  json.number("plastic", r.plastic);
   json.close();
 }
 

@@ -89,6 +89,7 @@ constexpr ReportKey kCollapseKeys[] = {
     {"parts_freed", "integer", "Members, slabs and walls no longer joined to the ground."},
     {"chunks_freed", "integer", "Of walls; 0: parts of a building do not break into chunks."},
     {"broken_joints", "array", "Joints that broke, in order of time."},
+    {"yielded_joints", "array", "Joints that became plastic hinges, in order of time."},
     {"broken_by", "object", "How many broke in which mode."},
     {"broken_at_rest", "integer",
      "Of them, before a projectile, a removal, a load or a motion of the ground."},
@@ -115,7 +116,16 @@ constexpr ReportKey kJointBreakKeys[] = {
     {"mode", "string", "Why it broke."},
     {"rule", "string",
      "Its interaction of forces and torques, the rule of posts, or the projectile that hit."},
-    {"component", "string", "The largest share: N, Vy, Vz, T, My or Mz; empty in other modes."},
+    {"component", "string",
+     "The largest share: N, Vy, Vz, T, My or Mz; rotation of a plastic hinge that has turned as "
+     "far as it can; empty in other modes."},
+};
+
+constexpr ReportKey kJointYieldKeys[] = {
+    {"joint", "string", "Name of the joint: part@part or part@ground."},
+    {"time", "number", "When it yielded first. Unit: s."},
+    {"utilisation", "number", "Demand divided by capacity then."},
+    {"rotation", "number", "Farthest that the hinge turned. Unit: rad."},
 };
 
 constexpr ReportKey kModeKeys[] = {
@@ -192,6 +202,7 @@ constexpr ReportKey kPeakKeys[] = {
 constexpr ReportKey kJointWorkKeys[] = {
     {"joint", "number", "Lost in rigid joints: shocks, and the correction of their drift."},
     {"damping", "number", "Taken by the damping of a ringing frame."},
+    {"plastic", "number", "Work of plastic hinges."},
 };
 
 constexpr ReportKey kProjectileKeys[] = {
@@ -337,6 +348,7 @@ std::string collapse_report_schema() {
   Json joint = object_of(kJointBreakKeys);
   joint["properties"]["mode"]["enum"] = kBreakModes;
   fill(properties["broken_joints"], list_of(std::move(joint)));
+  fill(properties["yielded_joints"], list_of(object_of(kJointYieldKeys)));
   fill(properties["broken_by"], object_of(kModeKeys));
   fill(properties["sag"], object_of(kSagKeys));
   fill(properties["reactions"], object_of({kBuildingReactionKeys, kReactionKeys}));

@@ -358,11 +358,12 @@ CollapseResult CollapseRun::outcome() {
   r.energy.fracture = losses.fracture;
   r.joint_work = losses.joint;
   r.damping = losses.damping;
+  r.plastic = losses.plastic;
   r.solves = motion_->solves();
   r.residual = motion_->residual();
   r.energy.numerical = r.energy_in - r.energy.kinetic - r.energy.potential - r.energy.strain -
                        r.energy.fracture - r.energy.friction - r.energy.contact - r.joint_work -
-                       r.damping;
+                       r.damping - r.plastic;
   r.momentum_error = largest_momentum_ > 0 ? largest_momentum_error_ / largest_momentum_ : 0;
   r.reactions[0] = impulse_.x, r.reactions[1] = impulse_.y, r.reactions[2] = impulse_.z;
   r.solver_fallbacks = world_.solver_fallbacks();

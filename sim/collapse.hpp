@@ -75,7 +75,15 @@ struct JointBreak {
   /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed"
   std::string_view mode;
   std::string rule;            ///< interaction, "ec3", "euler", "paper"; name of the projectile
-  std::string component;   ///< N, Vy, Vz, T, My, Mz; "" otherwise
+  std::string component;   ///< N, Vy, Vz, T, My, Mz, rotation; "" otherwise
+};
+
+/// A joint that became a plastic hinge.
+struct JointYield {
+  std::uint32_t joint = 0;
+  double time = 0;         ///< when it did so first, s
+  double utilisation = 0;  ///< then
+  double rotation = 0;     ///< farthest that it turned, rad
 };
 
 /// Mean load that a support carries at rest, world axes.
@@ -91,6 +99,7 @@ struct CollapseResult {
   std::uint64_t bodies = 0;       ///< moving bodies at the end
   std::uint64_t parts_freed = 0;  ///< members, slabs, walls no longer joined to the ground
   std::vector<JointBreak> broken_joints;  ///< by time, then joint
+  std::vector<JointYield> yielded_joints;  ///< by time, then joint
   std::uint64_t broken_at_rest = 0;       ///< of them, before a projectile, removal, load or motion
   double max_utilisation = 0;             ///< of any joint or post at any time from 0 on
   double utilisation_at_rest = 0;         ///< at time 0
@@ -107,6 +116,7 @@ struct CollapseResult {
   double penetration_max = 0;
   EnergyLedger energy;               ///< `numerical` holds what the solver's drift correction did not
   double damping = 0;                ///< taken by the damping of a ringing frame, J
+  double plastic = 0;                ///< work of plastic hinges, J
   SolveCounts solves;                ///< of the frame solver
   double residual = 0;               ///< its largest |K u − f| / |f|
   double joint_work = 0;             ///< lost in joints (rigid ones: shocks and correction), J

@@ -31,11 +31,13 @@ class CollapseRun {
     bool is_read = false;    ///< since the last sample
     double utilisation = 0;  ///< at the last reading
     JointSample peak;        ///< since the last sample
+    std::uint32_t yield = kNoPart;  ///< of the result's yielded joints
   };
   struct Shot {
     BodyId body = kNoBody;
     std::uint32_t track = kNoTrack;
     Vec3 velocity;  ///< when the step began
+    Vec3 given;     ///< momentum, to what stands, since they touch
   };
   /// What breaks in a step: collected first, then done in the order of joints.
   struct Failure {
@@ -73,8 +75,11 @@ class CollapseRun {
   void keep_most_utilised(std::vector<Failure>& failures) const;
   void add_unheld(std::vector<Failure>& failures) const;
   void give_way(std::size_t broken_before);
+  double borne_share(std::uint32_t part, std::size_t broken_before) const;
   std::uint32_t struck_part(const Contact& contact, BodyId ball) const;
   void read_loads(std::vector<Failure>& failures);
+  Utilisation demand_on(std::uint32_t joint, const JointLoad& load);
+  bool yields(const Failure& failure);
   void check_posts(std::vector<Failure>& failures);
   void check_hits(std::vector<Failure>& failures);
   void note_hit(const Contact& contact, std::uint32_t shot, double dt);

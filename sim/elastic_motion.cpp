@@ -21,6 +21,8 @@ constexpr std::uint32_t kStanding = 0xFFFFFFFEu, kGone = 0xFFFFFFFFu;  ///< inst
 constexpr double kQuietShare = 1e-10;
 constexpr double kQuietAfter = 0.25;  // s
 constexpr double kNoForce = 1;        // N: contacts below it are over
+constexpr double kTurnsBack = 1e-12;  // rad in a step
+constexpr double kEndless = 3.2;      // rad: above all capacities
 
 FrameSolverParams solver_params(const CollapseScene& scene) {
   FrameSolverParams params;
@@ -47,9 +49,13 @@ class ElasticMotion final : public FrameMotion {
   JointLoad load(std::uint32_t joint) const override;
   bool is_live(std::uint32_t joint) const override;
   void break_joint(std::uint32_t joint, bool bears_on) override;
+  HingeState hinge(std::uint32_t joint) const override;
+  bool yield(std::uint32_t joint, Vec3 moment) override;
   bool redistributes() const override { return true; }
   bool settle_breaks() override;
   std::vector<std::uint32_t> unheld_joints() const override;
+  double borne(std::uint32_t part) const override { return touches_[part].borne; }
+  Vec3 give_back(std::uint32_t part, double share) override;
   void rejoin(std::span<const std::uint32_t> joints) override;
   void remove_part(std::uint32_t part) override;
   void add_load(double more) override;
@@ -78,32 +84,65 @@ class ElasticMotion final : public FrameMotion {
   };
   /// Force of what touches a part, and where; the part's own undeformed place.
   struct Touch {
-    Vec3 impulse, moment;  ///< since the last step ended, about the origin
-    double size = 0;       ///< sum of the impulses' sizes
-    Vec3 weighted;         ///< their places, by size
-    Vec3 force, point;     ///< mean over the load time
+    Vec3 impulse;         ///< since the last step ended
+    double size = 0;      ///< sum of the impulses' sizes
+    Vec3 weighted;        ///< their places, by size
+    Vec3 force, point;    ///< mean over the load time
+    double approach = 0;  ///< of what struck it, fastest since it is active, m/s
+    Vec3 before;          ///< the force at the end of the step before
+    Vec3 owed;            ///< impulse that was taken and is not yet passed on, before the last step
+    double borne = 1;     ///< share of the blow that the frame could take
     bool is_active = false;
+  };
+  /// The standing frame before a step that may have to be done again.
+  struct Moment {
+    std::vector<double> u, v, f;
+    FrameLoads pushed, shaken;
+    MotionLosses losses;
+    double given = 0;
   };
   void list_joints();
   void add_collider(std::uint32_t part);
   void note_contacts();
-  void touch(std::uint32_t part, Vec3 point, Vec3 impulse);
+  void touch(const Contact& contact, std::uint32_t part, Vec3 impulse);
+  double speed_ahead(std::uint32_t part, const Touch& touch) const;
+  void limit_blows();
+  void step_again();
   bool update_touches(double dt);
   void solve_standing();
-  void account_for_step(const std::vector<double>& w, const FrameLoads& now);
+  void account_for_damping(const std::vector<double>& w);
+  void move_on(const FrameLoads& now);
+  void take_state(const FrameSolver& old, const std::vector<double>& u,
+                  const std::vector<double>& v);
+  FrameSolver& standing() const;
+  void stand_on();
+  void set_hinges(const std::vector<FrameSolver::Hinge>& hinges);
+  void stiffen_loose();
+  bool settle_hinges();
+  bool turn_endlessly(const std::vector<FrameSolver::Hinge>& hinges) const;
+  void hold_hinges(std::vector<FrameSolver::Hinge> hinges);
+  void follow_hinges();
+  std::vector<FrameSolver::Hinge> standing_hinges() const;
+  std::vector<FrameSolver::Hinge> stiff_hinges() const;
+  FrameLoads touching() const;
+  FrameLoads shaking() const;
+  FrameSolver& ledger() const { return dynamic_ ? *dynamic_ : *static_; }
   void wake();
   void fall_quiet(double dt);
   FrameLoads loads(bool of_pieces) const;
   void solve_static();
+  void balance();
   double mass_of(std::uint32_t part) const;
   BodyParams body_of(const std::vector<std::uint32_t>& parts) const;
-  Vec3 node_velocity(std::uint32_t node) const;
-  Vec3 part_velocity(std::uint32_t part) const;
+  Vec3 velocity_of_end(std::uint32_t part, std::uint32_t node) const;
+  std::vector<std::uint32_t> nodes_of(std::uint32_t part) const;
+  Vec3 velocity_at(std::uint32_t part, Vec3 point) const;
   void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
   void add_piece(std::vector<std::uint32_t> parts, BodyParams body);
   void detach(std::vector<std::uint32_t> parts);
   std::vector<std::vector<std::uint32_t>> components(
       const std::vector<std::uint32_t>& parts) const;
+  void stop_turning();
   void split(std::uint32_t piece);
   double frame_energy() const;
   Vec3 gravity() const;
@@ -125,12 +164,19 @@ class ElasticMotion final : public FrameMotion {
   std::vector<double> u_, v_, f_, scratch_, product_;  ///< of the standing frame, when it rings
   std::vector<std::uint32_t> broken_;                  ///< since breaks were settled
   std::vector<std::array<std::uint32_t, 2>> apart_;    ///< parts that bear on each other no more
+  std::vector<FrameSolver::Hinge> hinges_;             ///< of the standing frame, by joint
+  std::vector<FrameSolver::Hinge> yielding_;           ///< since breaks were settled
   std::vector<SupportReaction> supports_;
   double live_ = 0;        ///< added, N/m²
-  double now_ = 0, since_step_ = 0, quiet_for_ = 0;
+  double now_ = 0, since_step_ = 0, last_dt_ = 0, quiet_for_ = 0;
   bool rings_ = false, loads_changed_ = false;
   std::uint64_t serial_ = 0, skipped_ = 0;
-  double baseline_ = 0, given_ = 0, start_energy_ = 0;
+  Moment before_step_;
+  bool can_step_again_ = false;
+  std::vector<double> momentum_;  ///< M v_, if it is known
+  bool is_momentum_known_ = false;
+  FrameLoads pushed_, shaken_;  ///< contacts and motion of the ground at the last loads
+  double baseline_ = 0, given_ = 0;
   MotionLosses losses_;
   double residual_ = 0;
 };
@@ -209,7 +255,14 @@ void ElasticMotion::settle(const Progress&) {
     supports_.push_back(
         {frame_.joints[j].node, static_->reaction(j), static_->reaction_moment(j)});
   }
-  start_energy_ = static_->strain_energy();
+}
+
+/// Under other loads; in balance at any time, what they leave over counts as damping.
+void ElasticMotion::balance() {
+  const bool books = scene_.simulation.quasi_static;
+  const double before = books ? frame_energy() : 0;
+  solve_static();
+  if (books) losses_.damping += before - frame_energy();
 }
 
 void ElasticMotion::solve_static() {
@@ -229,14 +282,15 @@ void ElasticMotion::note_contacts() {
   for (const Contact& contact : world_.contacts()) {
     const Vec3 on_a = contact.impulse * contact.normal + contact.tangential;
     if (const std::uint32_t part = part_of(contact.a, contact.part_a); part != kNoPart)
-      touch(part, contact.point, on_a);
+      touch(contact, part, on_a);
     if (const std::uint32_t part = part_of(contact.b, contact.part_b); part != kNoPart)
-      touch(part, contact.point, -1.0 * on_a);
+      touch(contact, part, -1.0 * on_a);
   }
 }
 
 /// Point and impulse are turned back to where the part stood.
-void ElasticMotion::touch(std::uint32_t part, Vec3 point, Vec3 impulse) {
+void ElasticMotion::touch(const Contact& contact, std::uint32_t part, Vec3 impulse) {
+  Vec3 point = contact.point;
   if (piece_of_[part] < pieces_.size()) {
     const Pose back = inverse(world_.pose(pieces_[piece_of_[part]].body));
     point = back * point;
@@ -247,6 +301,63 @@ void ElasticMotion::touch(std::uint32_t part, Vec3 point, Vec3 impulse) {
   touch.impulse = touch.impulse + impulse;
   touch.size += size;
   touch.weighted = touch.weighted + size * point;
+  touch.approach = std::max(touch.approach, contact.approach);
+}
+
+/// Of the place that is touched, along the force, beyond the speed of what struck it.
+double ElasticMotion::speed_ahead(std::uint32_t part, const Touch& touch) const {
+  const double fall = scene_.simulation.gravity * scene_.rules.load_time;
+  const Vec3 along = (1 / length(touch.force)) * touch.force;
+  return dot(velocity_at(part, touch.point), along) - touch.approach - fall;
+}
+
+/// The world takes what stands for fixed, so that light parts would get more speed than what struck
+/// them had: after a step in which they did, it is done again with as much force as they can take.
+void ElasticMotion::limit_blows() {
+  if (!can_step_again_) return;
+  std::vector<std::pair<std::uint32_t, double>> ahead;
+  for (std::uint32_t part = 0; part < touches_.size(); ++part) {
+    if (!touches_[part].is_active || piece_of_[part] != kStanding) continue;
+    const double speed = speed_ahead(part, touches_[part]);
+    if (speed > 0) ahead.emplace_back(part, speed);
+  }
+  if (ahead.empty()) return;
+  std::swap(v_, before_step_.v);
+  for (auto& [part, speed] : ahead) {
+    const double before = speed_ahead(part, touches_[part]);
+    speed = before < 0 ? before / (before - speed) : 0;
+  }
+  std::swap(v_, before_step_.v);
+  for (const auto& [part, share] : ahead) {
+    touches_[part].force = share * touches_[part].force;
+    touches_[part].borne = share;
+    touches_[part].is_active = length(touches_[part].force) > kNoForce;
+  }
+  step_again();
+}
+
+Vec3 ElasticMotion::give_back(std::uint32_t part, double share) {
+  if (piece_of_[part] != kStanding) return {};
+  Touch& touch = touches_[part];
+  touch.force = share * touch.force;
+  if (can_step_again_) step_again();
+  const Vec3 back = touch.owed - (last_dt_ / 2) * (touch.before + touch.force);
+  touch = {};
+  if (rings_ && dynamic_) stand_on();
+  return back;
+}
+
+void ElasticMotion::step_again() {
+  u_ = before_step_.u;
+  v_ = before_step_.v;
+  is_momentum_known_ = false;
+  f_ = before_step_.f;
+  pushed_ = before_step_.pushed;
+  shaken_ = before_step_.shaken;
+  losses_ = before_step_.losses;
+  given_ = before_step_.given;
+  dynamic_->set_displacements(u_, loads(false));
+  solve_standing();
 }
 
 /// Forces follow the impulses by a first-order lag; true if any changed by more than asked for.
@@ -257,6 +368,8 @@ bool ElasticMotion::update_touches(double dt) {
     Touch& touch = touches_[part];
     if (!touch.is_active && touch.size == 0) continue;
     if (touch.size > 0) touch.point = (1 / touch.size) * touch.weighted;
+    touch.owed = touch.owed + touch.impulse - (last_dt_ / 2) * (touch.before + touch.force);
+    touch.before = touch.force;
     const Vec3 force = touch.force + share * ((1 / dt) * touch.impulse - touch.force);
     const double change = length(force - touch.force);
     if (change > scene_.simulation.max_error * std::max(length(touch.force), kNoForce)) {
@@ -264,10 +377,13 @@ bool ElasticMotion::update_touches(double dt) {
       if (piece_of_[part] < pieces_.size()) pieces_[piece_of_[part]].loaded_anew = true;
     }
     touch.force = force;
+    touch.borne = 1;
     touch.is_active = length(force) > kNoForce;
+    if (!touch.is_active) touch.approach = 0, touch.owed = {};
     touch.impulse = touch.weighted = {};
     touch.size = 0;
   }
+  last_dt_ = dt;
   return changed;
 }
 
@@ -275,7 +391,7 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
   now_ = now;
   since_step_ += dt;
   note_contacts();
-  loads_changed_ = false;
+  loads_changed_ = can_step_again_ = false;
   for (Piece& piece : pieces_) piece.loaded_anew = false;
   if (!ends_step) return;
   const bool changed = update_touches(since_step_);
@@ -284,9 +400,11 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
     standing_changed |= touches_[part].is_active && piece_of_[part] == kStanding;
   if (standing_changed) wake();
   const bool pieces_changed = std::ranges::any_of(pieces_, &Piece::loaded_anew);
-  if (pieces_changed) solve_static();
+  if (pieces_changed) balance();
   if (rings_) {
     solve_standing();
+    limit_blows();
+    follow_hinges();
     fall_quiet(since_step_);
   }
   skipped_ += !rings_ && !pieces_changed;
@@ -312,6 +430,7 @@ void ElasticMotion::wake() {
       if (intact_[j] == 0) broken.push_back(j);
     if (!broken.empty()) dynamic_->break_joints(broken);
     if (!gone.empty()) dynamic_->remove_parts(gone);
+    dynamic_->set_hinges(static_->hinges());
     v_.assign(dynamic_->freedoms(), 0);
     f_.resize(v_.size());
     scratch_.resize(v_.size());
@@ -320,37 +439,79 @@ void ElasticMotion::wake() {
   const std::span<const double> rest = static_->displacements();
   u_.assign(rest.begin(), rest.end());
   std::ranges::fill(v_, 0);
-  dynamic_->load_vector(loads(false), f_);
+  stand_on();
 }
 
-/// K* w = f₀ + f₁ − 2 K u₀ + (4/dt) M v₀, u₁ = u₀ + w, v₁ = (2/dt) w − v₀ with the loads at both ends:
-/// the trapezoidal rule on M v' = f − K u − C v, u' = v. Damping is in K* alone.
+/// K* w = f₀ + f₁ − 2 K u₀ + (4/dt) M v₀, u₁ = u₀ + w, v₁ = (2/dt) w − v₀ with the loads at both
+/// ends: the trapezoidal rule on M v' = f − K u − C v, u' = v. Damping is in K* alone.
 void ElasticMotion::solve_standing() {
   loads_changed_ = true;
   if (scene_.simulation.quasi_static) {
-    solve_static();
+    balance();
     return;
   }
   const double dt = scene_.simulation.step;
   const FrameLoads now = loads(false);
+  can_step_again_ = hinges_.empty() && !now.contacts.empty();
+  if (can_step_again_) before_step_ = {u_, v_, f_, pushed_, shaken_, losses_, given_};
   std::vector<double>& next = scratch_;
   dynamic_->load_vector(now, next);
   for (std::size_t i = 0; i < next.size(); ++i) std::swap(f_[i], next[i]), next[i] += f_[i];
   dynamic_->stiffness_times(u_, product_);
   for (std::size_t i = 0; i < next.size(); ++i) next[i] -= 2 * product_[i];
-  dynamic_->mass_times(v_, product_);
-  for (std::size_t i = 0; i < next.size(); ++i) next[i] += 4 / dt * product_[i];
+  if (!is_momentum_known_) {
+    momentum_.resize(v_.size());
+    dynamic_->mass_times(v_, momentum_);
+  }
+  for (std::size_t i = 0; i < next.size(); ++i) next[i] += 4 / dt * momentum_[i];
   dynamic_->solve_system(next, product_);
   for (std::size_t i = 0; i < next.size(); ++i) {
     u_[i] += product_[i];
     v_[i] = 2 / dt * product_[i] - v_[i];
   }
-  account_for_step(product_, now);
-  dynamic_->set_displacements(u_, now);
+  account_for_damping(product_);
+  move_on(now);
 }
 
-/// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt; contacts give the frame f·w, which is no loss.
-void ElasticMotion::account_for_step(const std::vector<double>& w, const FrameLoads& now) {
+/// To u_. Contacts and the ground's own motion give the frame the mean of their forces at both ends
+/// of the step times the way.
+void ElasticMotion::move_on(const FrameLoads& now) {
+  const FrameLoads pushes = touching(), shakes = shaking();
+  const bool touched = !pushed_.contacts.empty() || !pushes.contacts.empty();
+  const bool shaken = !scene_.scenario.ground_motion.times.empty();
+  const auto work = [&] {
+    return std::pair{
+        touched ? dynamic_->work_of(pushed_) + dynamic_->work_of(pushes) : 0,
+        shaken ? dynamic_->work_of(shaken_) + dynamic_->work_of(shakes) : 0};
+  };
+  const auto [contact_before, ground_before] = work();
+  dynamic_->set_displacements(u_, now);
+  const auto [contact_after, ground_after] = work();
+  losses_.contact -= (contact_after - contact_before) / 2;
+  given_ += (ground_after - ground_before) / 2;
+  if (touched || shaken) dynamic_->set_displacements(u_, now);  // its loads again
+  pushed_ = pushes;
+  shaken_ = shakes;
+}
+
+/// The contacts of all loads.
+FrameLoads ElasticMotion::touching() const {
+  FrameLoads contacts;
+  contacts.gravity = {};
+  contacts.contacts = loads(false).contacts;
+  return contacts;
+}
+
+/// What the loads have beyond contacts and weight.
+FrameLoads ElasticMotion::shaking() const {
+  FrameLoads motion = loads(false);
+  motion.contacts.clear();
+  motion.gravity = gravity() + Vec3{0, scene_.simulation.gravity, 0};
+  return motion;
+}
+
+/// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt.
+void ElasticMotion::account_for_damping(const std::vector<double>& w) {
   const double dt = scene_.simulation.step;
   const auto dot_with = [&](const std::vector<double>& y) {
     double sum = 0;
@@ -358,20 +519,15 @@ void ElasticMotion::account_for_step(const std::vector<double>& w, const FrameLo
     return sum;
   };
   std::vector<double>& y = scratch_;
-  if (scene_.simulation.damping_mass > 0) {
-    dynamic_->mass_times(w, y);
-    losses_.damping += scene_.simulation.damping_mass / dt * dot_with(y);
-  }
+  const double by_mass = scene_.simulation.damping_mass / 2;  // M w = dt (M v₀ + M v₁)/2
+  losses_.damping += by_mass * dot_with(momentum_);
+  dynamic_->mass_times(v_, momentum_);
+  is_momentum_known_ = true;
+  losses_.damping += by_mass * dot_with(momentum_);
   if (scene_.simulation.damping_stiffness > 0) {
     dynamic_->stiffness_times(w, y);
     losses_.damping += scene_.simulation.damping_stiffness / dt * dot_with(y);
   }
-  if (now.contacts.empty()) return;
-  FrameLoads contacts;
-  contacts.gravity = {};
-  contacts.contacts = now.contacts;
-  dynamic_->load_vector(contacts, y);
-  losses_.contact -= dot_with(y);
 }
 
 void ElasticMotion::fall_quiet(double dt) {
@@ -380,9 +536,143 @@ void ElasticMotion::fall_quiet(double dt) {
       scene_.simulation.quasi_static || kinetic() <= kQuietShare * dynamic_->strain_energy();
   quiet_for_ = is_quiet ? quiet_for_ + dt : 0;
   if (quiet_for_ < kQuietAfter) return;
-  losses_.damping += kinetic();
+  const double before = frame_energy();
+  if (dynamic_ && !hinges_.empty()) {
+    hinges_ = stiff_hinges();
+    dynamic_->set_hinges(hinges_);
+    static_->set_hinges(hinges_);
+  }
   solve_static();
   rings_ = false;
+  if (dynamic_) dynamic_->set_displacements(static_->displacements(), loads(false));
+  losses_.damping += before - frame_energy();
+}
+
+// ---- plastic hinges ------------------------------------------------------------------------------
+// In time they turn in the dynamic solver; the static one holds them as they are left.
+
+FrameSolver& ElasticMotion::standing() const {
+  return rings_ && dynamic_ ? *dynamic_ : *static_;
+}
+
+/// The ringing frame's forces follow its displacements anew.
+void ElasticMotion::stand_on() {
+  const FrameLoads now = loads(false);
+  is_momentum_known_ = false;
+  dynamic_->load_vector(now, f_);
+  dynamic_->set_displacements(u_, now);
+  pushed_ = touching();
+  shaken_ = shaking();
+}
+
+std::vector<FrameSolver::Hinge> ElasticMotion::standing_hinges() const {
+  std::vector<FrameSolver::Hinge> hinges = standing().hinges();
+  std::erase_if(hinges, [&](const FrameSolver::Hinge& hinge) {
+    return piece_of_[frame_.joints[hinge.joint].a] != kStanding;
+  });
+  return hinges;
+}
+
+std::vector<FrameSolver::Hinge> ElasticMotion::stiff_hinges() const {
+  std::vector<FrameSolver::Hinge> hinges = standing_hinges();
+  for (FrameSolver::Hinge& hinge : hinges) hinge.flows = false;
+  return hinges;
+}
+
+FrameMotion::HingeState ElasticMotion::hinge(std::uint32_t j) const {
+  const auto found = std::ranges::lower_bound(hinges_, j, {}, &FrameSolver::Hinge::joint);
+  if (found == hinges_.end() || found->joint != j) return {};
+  return {found->flows, length(found->rotation)};
+}
+
+/// What has come loose bends no more.
+bool ElasticMotion::yield(std::uint32_t j, Vec3 moment) {
+  if (piece_of_[frame_.joints[j].a] != kStanding || !standing().can_bend(j)) return false;
+  yielding_.push_back({j, moment, {}, true});
+  return true;
+}
+
+/// Displacements go on; what the hinges take up in turning is lost.
+void ElasticMotion::set_hinges(const std::vector<FrameSolver::Hinge>& hinges) {
+  const double before = frame_energy();
+  standing().set_hinges(hinges);
+  const bool in_time = rings_ && dynamic_;
+  if (in_time) {
+    stand_on();
+  } else {
+    static_->solve(loads(true));
+  }
+  const std::vector<FrameSolver::Hinge> turned = standing_hinges();
+  if (!in_time && turn_endlessly(turned)) {
+    hold_hinges(hinges);
+  } else {
+    hinges_ = turned;
+  }
+  losses_.plastic += before - frame_energy();
+  loads_changed_ = true;
+}
+
+/// At rest: hinges make the frame a mechanism.
+bool ElasticMotion::turn_endlessly(const std::vector<FrameSolver::Hinge>& hinges) const {
+  return !static_->mechanisms().empty() ||
+         std::ranges::any_of(hinges, [](const FrameSolver::Hinge& hinge) {
+           return hinge.flows && length(hinge.rotation) > kEndless;
+         });
+}
+
+/// At rest there is no state with these hinges: it stays as it was, but they count as turned too
+/// far.
+void ElasticMotion::hold_hinges(std::vector<FrameSolver::Hinge> hinges) {
+  for (FrameSolver::Hinge& hinge : hinges) {
+    const auto was = std::ranges::find(hinges_, hinge.joint, &FrameSolver::Hinge::joint);
+    hinge.rotation = was == hinges_.end() ? Vec3{} : was->rotation;
+    hinge.flows = false;
+  }
+  static_->set_hinges(hinges);
+  static_->solve(loads(true));
+  hinges_ = standing_hinges();
+  for (const FrameSolver::Hinge& hinge : hinges) {
+    const auto is = std::ranges::find(hinges_, hinge.joint, &FrameSolver::Hinge::joint);
+    is->flows = true;
+    is->rotation = {0, kEndless, 0};
+  }
+}
+
+/// Where the static solver turns hinges it keeps only those of what stands.
+void ElasticMotion::stiffen_loose() {
+  std::vector<FrameSolver::Hinge> hinges = static_->hinges();
+  std::erase_if(hinges, [&](const FrameSolver::Hinge& hinge) {
+    return !hinge.flows || piece_of_[frame_.joints[hinge.joint].a] == kStanding;
+  });
+  for (FrameSolver::Hinge& hinge : hinges) hinge.flows = false;
+  static_->set_hinges(hinges);
+}
+
+bool ElasticMotion::settle_hinges() {
+  if (yielding_.empty()) return false;
+  wake();
+  set_hinges(yielding_);
+  yielding_.clear();
+  return true;
+}
+
+/// After a step of the standing frame. A hinge that would turn back is stiff, as it was before.
+void ElasticMotion::follow_hinges() {
+  if (hinges_.empty()) return;
+  const std::vector<FrameSolver::Hinge> now = standing_hinges();
+  assert(now.size() == hinges_.size() && "hinges come and go when breaks are settled");
+  std::vector<FrameSolver::Hinge> stiff;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (!now[i].flows) continue;
+    const double work = dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+    losses_.plastic += work;
+    if (!rings_ || !dynamic_) losses_.damping -= work;  // where what is lost at rest was booked
+    if (work >= -kTurnsBack * length(now[i].moment)) continue;
+    stiff.push_back(hinges_[i]);
+    stiff.back().flows = false;
+  }
+  hinges_ = now;
+  if (!stiff.empty()) set_hinges(stiff);
 }
 
 // ---- joints --------------------------------------------------------------------------------------
@@ -408,15 +698,36 @@ double ElasticMotion::frame_energy() const {
   return kinetic() + strain() + potential();
 }
 
+/// A member that lost one end hangs on the other as a rigid arm, whose inertia is far above what
+/// turned at that node before: next to nothing of its angular momentum is left as speed.
+void ElasticMotion::stop_turning() {
+  const auto is_held = [&](std::uint32_t part, std::uint32_t node) {
+    return std::ranges::any_of(joints_of_[part], [&](std::uint32_t j) {
+      return frame_.joints[j].node == node && intact_[j] != 0;
+    });
+  };
+  for (const std::uint32_t j : broken_) {
+    for (const std::uint32_t part : {frame_.joints[j].a, frame_.joints[j].b}) {
+      if (part >= frame_.members.size() || piece_of_[part] != kStanding) continue;
+      const FrameMember& member = frame_.members[part];
+      if (is_held(part, member.from) == is_held(part, member.to)) continue;
+      const std::size_t first =
+          dynamic_->freedom(is_held(part, member.from) ? member.from : member.to);
+      if (first != FrameSolver::kHeld) std::fill_n(v_.begin() + static_cast<long>(first) + 3, 3, 0);
+    }
+  }
+}
+
 /// The elastic state goes on with the joints gone: displacements are continuous, forces are not.
 bool ElasticMotion::settle_breaks() {
-  if (broken_.empty()) return false;
+  const bool bent = settle_hinges();
+  if (broken_.empty()) return bent;
   std::ranges::sort(broken_);
   const bool of_standing = std::ranges::any_of(
       broken_, [&](std::uint32_t j) { return piece_of_[frame_.joints[j].a] == kStanding; });
-  const double before = frame_energy();
-  const double in_world = world_.kinetic_energy();
+  const double before = frame_energy() + world_.kinetic_energy();
   if (of_standing) wake();
+  if (dynamic_) static_->set_hinges(stiff_hinges());
   static_->break_joints(broken_);
   if (dynamic_) dynamic_->break_joints(broken_);
   std::vector<std::uint32_t> of_graph, split_pieces;
@@ -431,6 +742,7 @@ bool ElasticMotion::settle_breaks() {
   std::ranges::sort(split_pieces);
   split_pieces.erase(std::ranges::unique(split_pieces).begin(), split_pieces.end());
   for (const std::uint32_t piece : split_pieces) split(piece);
+  if (dynamic_) stop_turning();
   broken_.clear();
   for (const auto& [a, b] : apart_) {
     const auto body = [&](std::uint32_t part) {
@@ -440,14 +752,12 @@ bool ElasticMotion::settle_breaks() {
       world_.separate(body(a), body(b));
   }
   apart_.clear();
+  stiffen_loose();
   static_->solve(loads(true));
-  if (rings_ && dynamic_) {
-    const FrameLoads now = loads(false);
-    dynamic_->load_vector(now, f_);
-    dynamic_->set_displacements(u_, now);
-  }
+  if (rings_ && dynamic_) stand_on();
+  hinges_ = standing_hinges();
   loads_changed_ = true;
-  losses_.fracture += before - frame_energy() - (world_.kinetic_energy() - in_world);
+  losses_.fracture += before - frame_energy() - world_.kinetic_energy();
   return true;
 }
 
@@ -501,33 +811,69 @@ BodyParams ElasticMotion::body_of(const std::vector<std::uint32_t>& parts) const
   return body;
 }
 
-Vec3 ElasticMotion::node_velocity(std::uint32_t node) const {
-  const std::size_t first = dynamic_->freedom(node);
-  return first == FrameSolver::kHeld ? Vec3{} : Vec3{v_[first], v_[first + 1], v_[first + 2]};
-}
-
-/// Mean of the velocities of its corners or ends.
-Vec3 ElasticMotion::part_velocity(std::uint32_t part) const {
-  if (!rings_ || !dynamic_) return {};
-  const auto members = static_cast<std::uint32_t>(frame_.members.size());
-  if (part < members)
-    return 0.5 * (node_velocity(frame_.members[part].from) +
-                  node_velocity(frame_.members[part].to));
-  const auto& nodes = part < frame_.wall_part(0) ? frame_.slabs[part - members].nodes
+std::vector<std::uint32_t> ElasticMotion::nodes_of(std::uint32_t part) const {
+  if (part < frame_.members.size()) return {frame_.members[part].from, frame_.members[part].to};
+  const auto& nodes = part < frame_.wall_part(0) ? frame_.slabs[part - frame_.slab_part(0)].nodes
                                                  : frame_.walls[part - frame_.wall_part(0)].nodes;
-  Vec3 sum;
-  for (const std::uint32_t node : nodes) sum = sum + node_velocity(node);
-  return 0.25 * sum;
+  return {nodes.begin(), nodes.end()};
 }
 
-/// The rigid motion with the momentum and angular momentum of the parts.
+/// Of a part at its node; an end whose joint broke earlier goes with the part's other end.
+Vec3 ElasticMotion::velocity_of_end(std::uint32_t part, std::uint32_t node) const {
+  std::uint32_t held = node;
+  const auto holds = [&](std::uint32_t j) {
+    return frame_.joints[j].node == held &&
+           (intact_[j] != 0 || std::ranges::binary_search(broken_, j));
+  };
+  if (part < frame_.members.size() && std::ranges::none_of(joints_of_[part], holds)) {
+    const FrameMember& member = frame_.members[part];
+    held = member.from == node ? member.to : member.from;
+    if (std::ranges::none_of(joints_of_[part], holds)) held = node;
+  }
+  const std::size_t first = dynamic_->freedom(held);
+  if (first == FrameSolver::kHeld) return {};
+  const Vec3 turn{v_[first + 3], v_[first + 4], v_[first + 5]};
+  return Vec3{v_[first], v_[first + 1], v_[first + 2]} +
+         cross(turn, frame_.nodes[node].position - frame_.nodes[held].position);
+}
+
+/// Of a member linear between its ends, of a plate the mean of its corners.
+Vec3 ElasticMotion::velocity_at(std::uint32_t part, Vec3 point) const {
+  const std::vector<std::uint32_t> nodes = nodes_of(part);
+  if (nodes.size() > 2) {
+    Vec3 sum;
+    for (const std::uint32_t node : nodes) sum = sum + velocity_of_end(part, node);
+    return 0.25 * sum;
+  }
+  const Vec3 from = frame_.nodes[nodes[0]].position;
+  const Vec3 along = frame_.nodes[nodes[1]].position - from;
+  const double share = std::clamp(dot(point - from, along) / dot(along, along), 0.0, 1.0);
+  return (1 - share) * velocity_of_end(part, nodes[0]) + share * velocity_of_end(part, nodes[1]);
+}
+
+/// The rigid motion with the momentum and angular momentum of the parts. Between its nodes a part's
+/// velocity is linear in each direction: neighbours share their masses as finite elements do.
 void ElasticMotion::take_frames_motion(BodyParams& body,
                                        const std::vector<std::uint32_t>& parts) const {
+  if (!rings_ || !dynamic_) return;
   Vec3 momentum, angular;
   for (const std::uint32_t part : parts) {
-    const Vec3 p = mass_of(part) * part_velocity(part);
-    momentum = momentum + p;
-    angular = angular + cross(solids_[part].centre - body.centroid, p);
+    const std::vector<std::uint32_t> nodes = nodes_of(part);
+    const std::size_t count = nodes.size();
+    const double share = mass_of(part) / (count == 2 ? 6 : 36), size = count == 2 ? 2 : 4;
+    Vec3 middle;
+    for (const std::uint32_t node : nodes)
+      middle = middle + (1 / size) * frame_.nodes[node].position;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 arm = solids_[part].centre + frame_.nodes[nodes[i]].position - middle;
+      for (std::size_t j = 0; j < count; ++j) {
+        const std::size_t apart = (i + count - j) % count;
+        const double parted = apart == 0 ? size : apart == 2 ? 1 : size / 2;
+        const Vec3 p = share * parted * velocity_of_end(part, nodes[j]);
+        momentum = momentum + p;
+        angular = angular + cross(arm - body.centroid, p);
+      }
+    }
   }
   body.velocity = (1 / body.mass) * momentum;
   body.angular_velocity = inverse(body.inertia) * angular;
@@ -616,22 +962,46 @@ void ElasticMotion::split(std::uint32_t index) {
   }
 }
 
-/// Happens at time 0, at rest: the solver is made anew, its state is the same.
+/// Happens at time 0: the solvers are made anew, their state is the same.
 void ElasticMotion::rejoin(std::span<const std::uint32_t> joints) {
   if (joints.empty()) return;
+  const double before = frame_energy();
+  const std::vector<FrameSolver::Hinge> hinges = stiff_hinges();
   static_ = std::make_unique<FrameSolver>(frame_, solver_params(scene_));
-  dynamic_.reset();
+  const std::unique_ptr<FrameSolver> old = std::move(dynamic_);
+  const std::vector<double> u = u_, v = v_;
+  const bool rang = rings_ && old;
   rings_ = false;
   graph_ = SupportGraph(frame_.part_count(), bonds_of(frame_));
   list_joints();
-  std::vector<std::uint32_t> broken;
+  std::vector<std::uint32_t> broken, gone;
   for (std::uint32_t j = 0; j < intact_.size(); ++j)
     if (intact_[j] == 0) broken.push_back(j);
+  for (std::uint32_t part = 0; part < piece_of_.size(); ++part)
+    if (piece_of_[part] == kGone) gone.push_back(part);
   if (!broken.empty()) {
     static_->break_joints(broken);
     graph_.break_bonds(broken);
   }
+  if (!gone.empty()) static_->remove_parts(gone);
+  static_->set_hinges(hinges);
+  hinges_ = standing_hinges();
   solve_static();
+  if (rang) take_state(*old, u, v);
+  losses_.fracture += before - frame_energy();
+}
+
+/// Of a solver of the same nodes in another order.
+void ElasticMotion::take_state(const FrameSolver& old, const std::vector<double>& u,
+                               const std::vector<double>& v) {
+  wake();
+  for (std::uint32_t node = 0; node < frame_.nodes.size(); ++node) {
+    const std::size_t from = old.freedom(node), to = dynamic_->freedom(node);
+    if (from == FrameSolver::kHeld || to == FrameSolver::kHeld) continue;
+    std::copy_n(u.data() + from, 6, u_.data() + to);
+    std::copy_n(v.data() + from, 6, v_.data() + to);
+  }
+  stand_on();
 }
 
 void ElasticMotion::remove_part(std::uint32_t part) {
@@ -639,19 +1009,21 @@ void ElasticMotion::remove_part(std::uint32_t part) {
   assert(index < pieces_.size() && pieces_[index].parts.size() == 1 && "its joints are broken");
   const BodyId body = pieces_[index].body;
   baseline_ -= mass_of(part) * scene_.simulation.gravity * solids_[part].centre.y;
-  const double before = world_.kinetic_energy();
+  const double before = world_.kinetic_energy() + frame_energy();
   parts_of_body_[body].clear();
   world_.remove(body);
-  given_ += world_.kinetic_energy() - before;
   pieces_[index].body = kNoBody;
   pieces_[index].parts.clear();
   piece_of_[part] = kGone;
   static_->remove_parts({&part, 1});
+  given_ += world_.kinetic_energy() + frame_energy() - before;
+  hinges_ = standing_hinges();
 }
 
 /// Free pieces grow heavier too.
 void ElasticMotion::add_load(double more) {
-  const double before = world_.kinetic_energy();
+  wake();
+  const double before = world_.kinetic_energy() + frame_energy();
   live_ += more;
   for (const Piece& piece : pieces_) {
     double area = 0, mass = 0;
@@ -664,8 +1036,12 @@ void ElasticMotion::add_load(double more) {
     baseline_ += more * area * world_.centre(piece.body).y;
     world_.set_mass(piece.body, mass);
   }
-  given_ += world_.kinetic_energy() - before;
-  wake();
+  const double plastic = losses_.plastic;
+  if (rings_ && dynamic_) {
+    stand_on();
+    follow_hinges();
+  }
+  given_ += world_.kinetic_energy() + frame_energy() + losses_.plastic - plastic - before;
 }
 
 Pose ElasticMotion::pose(std::uint32_t part) const {
@@ -687,7 +1063,7 @@ double ElasticMotion::sag(std::uint32_t member) const {
                ? stood.y - (world_.pose(pieces_[piece_of_[member]].body) * stood).y
                : 0;
   }
-  return -static_->displacement(node).y;
+  return -standing().displacement(node).y;
 }
 
 std::uint64_t ElasticMotion::bodies() const {
@@ -700,28 +1076,29 @@ std::uint64_t ElasticMotion::bodies() const {
 
 double ElasticMotion::kinetic() const {
   if (!rings_ || !dynamic_) return 0;
-  std::vector<double> momentum(v_.size());
-  dynamic_->mass_times(v_, momentum);
+  std::vector<double> momentum = momentum_;
+  if (!is_momentum_known_) {
+    momentum.resize(v_.size());
+    dynamic_->mass_times(v_, momentum);
+  }
   double twice = 0;
   for (std::size_t i = 0; i < v_.size(); ++i) twice += v_[i] * momentum[i];
   return twice / 2;
 }
 
 double ElasticMotion::strain() const {
-  return rings_ && dynamic_ ? dynamic_->strain_energy() : static_->strain_energy();
+  return ledger().strain_energy();
 }
 
 /// Of the weight on the frame's displacements.
 double ElasticMotion::potential() const {
-  const FrameSolver& solver = rings_ && dynamic_ ? *dynamic_ : *static_;
-  std::vector<double> weight(solver.freedoms());
   FrameLoads own;
   own.gravity = {0, -scene_.simulation.gravity, 0};
   if (live_ > 0) own.live.assign(frame_.slabs.size(), live_);
-  solver.load_vector(own, weight);
-  const std::span<const double> u = solver.displacements();
-  double work = 0;
-  for (std::size_t i = 0; i < weight.size(); ++i) work += weight[i] * u[i];
+  FrameSolver& solver = ledger();
+  const double work = solver.work_of(own);
+  const std::vector<double> u(solver.displacements().begin(), solver.displacements().end());
+  solver.set_displacements(u, loads(&solver == static_.get()));  // its loads again
   return -work;
 }
 

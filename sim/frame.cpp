@@ -40,6 +40,12 @@ std::span<const Field<JointClass>> fields() {
        "Whether torque passes; without it the parts turn freely about the joint."},
       {"bearing", &P::bearing, "", "Whether compression passes by contact and never breaks it."},
       {"friction", &P::friction, "", "For mohr: tangent of the friction angle.", {0, 10}},
+      {"rotation_capacity",
+       &P::rotation_capacity,
+       "rad",
+       "For hybrid: what its rule breaks bends in a plastic hinge, until it has turned so far; 0: "
+       "brittle. bullet ignores it.",
+       {0, 3}},
   };
   return table;
 }

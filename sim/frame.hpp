@@ -64,6 +64,8 @@ struct JointClass {
   bool rigid = true;      ///< false: the parts turn freely about the joint (no torque passes)
   bool bearing = false;   ///< compression passes by contact (splices and bases of posts)
   double friction = 0.6;  ///< mohr: tan φ
+  /// How far the end of a member turns in a plastic hinge before the joint parts, rad; 0: brittle.
+  double rotation_capacity = 0;
 };
 template <>
 std::span<const Field<JointClass>> fields();  ///< the plain keys; force and torque beside them

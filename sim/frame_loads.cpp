@@ -62,7 +62,7 @@ std::uint32_t FrameSolver::Impl::piece_of(const Member& member) const {
 void FrameSolver::Impl::add_load(std::uint32_t m, const BeamLoad& load) {
   const Member& member = members[m];
   if (member.role == Role::elastic) {
-    const Twelve held_ends = fixed_end_of(elements[m], load);
+    const Twelve held_ends = fixed_end_of(unbent(m), load);
     for (std::size_t i = 0; i < 12; ++i) fixed[m][i] += held_ends[i];
     return;
   }
@@ -149,7 +149,7 @@ void FrameSolver::Impl::add_field(std::uint32_t m, const MassField& field) {
   const double line = line_mass(m);
   const Vec3 load = line * field.at(member.at(member.response.length / 2));
   if (member.role == Role::elastic) {
-    add_uniform(member.response, load, fixed[m]);
+    add_uniform(bent_of[m] == kNone ? member.response : bent[bent_of[m]].response, load, fixed[m]);
   } else {
     add_load(m, {.uniform = load, .points = {}});
   }
@@ -269,6 +269,7 @@ void FrameSolver::Impl::collect(const FrameLoads& loads, std::span<double> resul
   }
   if (!pieces.empty()) relieve_pieces();
   weigh_plates(loads);
+  load_hinges();
   std::ranges::fill(result, 0.0);
   for (std::uint32_t m = 0; m < members.size(); ++m) {
     if (!members[m].present()) continue;

@@ -24,6 +24,7 @@ struct MotionLosses {
   double joint = 0;     ///< in rigid joints
   double fracture = 0;  ///< what was stored elastically where something broke
   double damping = 0;   ///< of the ringing frame
+  double plastic = 0;   ///< work of plastic hinges
   double contact = 0;   ///< less (or more) than the world has booked for contacts
 };
 
@@ -43,12 +44,26 @@ class FrameMotion {
   virtual bool is_live(std::uint32_t joint) const = 0;
   /// Joints let go; unless `bears_on` their parts do not touch each other from now on either.
   virtual void break_joint(std::uint32_t joint, bool bears_on) = 0;
+  /// A joint's plastic hinge.
+  struct HingeState {
+    bool flows = false;   ///< its bending moments stay as they are
+    double rotation = 0;  ///< plastic, of the member's end against the node, rad
+  };
+  virtual HingeState hinge(std::uint32_t) const { return {}; }
+  /// The joint bends from now on, its moments (M_y, M_z; joint axes) held at these. False: it
+  /// cannot.
+  virtual bool yield(std::uint32_t, Vec3) { return false; }
   /// Whether other joints take over at once what a broken one carried.
   virtual bool redistributes() const = 0;
   /// After all joints of a batch: what came loose starts to move. True if other loads followed.
   virtual bool settle_breaks() = 0;
   /// Joints that have to go too: what they hold has lost too many others to be in balance.
   virtual std::vector<std::uint32_t> unheld_joints() const = 0;
+  /// Share of what struck the part in the last step that it could take up.
+  virtual double borne(std::uint32_t) const { return 1; }
+  /// Of what struck the part in the last step it bore but this share: its joints broke. Returns the
+  /// impulse that the frame has not taken up, N s; nothing presses on the part any more.
+  virtual Vec3 give_back(std::uint32_t, double) { return {}; }
   /// The frame's joints with these numbers have another part b now.
   virtual void rejoin(std::span<const std::uint32_t> joints) = 0;
   virtual void remove_part(std::uint32_t part) = 0;
@@ -71,7 +86,7 @@ class FrameMotion {
   virtual double potential() const = 0;  ///< of what is not in the world, against standing, J
   virtual double baseline() const = 0;   ///< potential of the world's bodies where they started, J
   virtual MotionLosses losses() const = 0;
-  virtual double given() const = 0;      ///< energy that removed and added masses brought, J
+  virtual double given() const = 0;  ///< energy that removed and added masses brought, J
   virtual SolveCounts solves() const = 0;
   virtual double residual() const = 0;  ///< of equilibrium, largest so far, relative
 };

@@ -130,6 +130,7 @@ void FrameSolver::Impl::recover() {
     const Twelve elastic = end_force(m, displacements_of(members[m], u));
     for (std::size_t i = 0; i < 12; ++i) forces[m][i] += elastic[i];
   }
+  turn_hinges();
   for (std::uint32_t s = 0; s < diaphragms.size(); ++s) add_diaphragm_shear(s);
 }
 
@@ -313,7 +314,7 @@ double FrameSolver::strain_energy() const {
   stiffness_times(impl_->u, force);
   double sum = 0;
   for (std::size_t i = 0; i < force.size(); ++i) sum += force[i] * impl_->u[i];
-  return sum / 2;
+  return sum / 2 + impl_->strain_of_hinges();
 }
 
 FactorCounts FrameSolver::counts() const {

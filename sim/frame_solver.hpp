@@ -67,6 +67,23 @@ class FrameSolver {
   void break_joints(std::span<const std::uint32_t> joints);
   /// Parts leave the model altogether, with all their joints (they fell off, or were removed).
   void remove_parts(std::span<const std::uint32_t> parts);
+  /// A plastic hinge at the end of a joint's part a. It turns about the section's axes while its
+  /// moments are held, else it is rigid with the rotation that is left. Joint axes, y and z only;
+  /// signs as JointLoad, so that moment · rotation is work done.
+  struct Hinge {
+    std::uint32_t joint = 0;
+    Vec3 moment;    ///< held while it flows, N m
+    Vec3 rotation;  ///< of the node against the member; followed while it flows, rad
+    bool flows = true;
+  };
+  /// Whether the joint can become a hinge: an intact rigid one of members, whose part a hangs on
+  /// both its ends and carries no other there.
+  bool can_bend(std::uint32_t joint) const;
+  /// Makes joints hinges, or changes them, where they can bend; they go with their joints.
+  /// Second order does not see the rotation of hinges.
+  void set_hinges(std::span<const Hinge> hinges);
+  std::vector<Hinge> hinges() const;  ///< by joint; rotations of the last displacements
+
   /// Parts that nothing in the model holds any more, not removed: members without joints or on one
   /// hinge, slabs on less than three joints or on joints in line, walls on less than two (of the
   /// ground floor: none). They take part in nothing. Ascending.
@@ -86,7 +103,9 @@ class FrameSolver {
   double residual() const;
   /// What the pins of free pieces carry, largest, N or N m: 0 but for rounding.
   double pin_force() const;
-  double strain_energy() const;  ///< ½ uᵀ K u, J
+  double strain_energy() const;  ///< ½ uᵀ K u, of the elastic part of u where there are hinges, J
+  /// Work of these loads on the displacements as they are, J.
+  double work_of(const FrameLoads& loads) const;
   FactorCounts counts() const;
 
   // For dynamics: vectors of six numbers per free node (`freedoms`), in an order of their own.

@@ -53,6 +53,17 @@ struct FrameSolver::Impl {
     std::array<double, 2> stiffness{};
     bool active = false;
   };
+  /// A member with plastic hinges; moments and rotations (of its nodes against its ends) in its own
+  /// axes, of y and z.
+  struct Bent {
+    std::uint32_t member = kNone;
+    BeamElement element;      ///< as if the hinges were rigid
+    MemberResponse response;  ///< of that
+    Twelve fixed{};           ///< and so loaded
+    std::array<std::uint32_t, 2> joint{kNone, kNone};
+    std::array<Vec3, 2> moment{}, rotation{};
+    std::array<bool, 2> flows{};
+  };
   /// What holds together but not to the ground.
   struct Piece {
     std::uint32_t pin = kNone;  ///< its lowest solver node
@@ -87,6 +98,18 @@ struct FrameSolver::Impl {
   void pin_pieces();
   void restrain_rotations();
   void refactor();
+
+  // frame_hinges.cpp: members that bend for good.
+  bool can_bend(std::uint32_t joint) const;
+  const BeamElement& unbent(std::uint32_t m) const;  ///< the element as if hinges were rigid
+  void set_hinges(std::span<const Hinge> hinges);
+  void bend(std::uint32_t m);
+  static Twelve plastic_motion(const Bent& b, const std::array<Vec3, 2>& rotation);
+  static std::array<Vec3, 2> plastic_rotations(const Bent& b, const Twelve& force);
+  void load_hinges();
+  void turn_hinges();
+  double strain_of_hinges() const;
+  double work_of(const FrameLoads& loads);
 
   // frame_loads.cpp: from loads to nodal forces.
   void collect(const FrameLoads& loads, std::span<double> f);
@@ -124,6 +147,8 @@ struct FrameSolver::Impl {
   std::vector<BeamElement> elements;                 ///< of the members
   std::vector<std::vector<PointMass>> point_masses;  ///< of walls that hang, per member
   std::vector<BlockChange> in_factor;                ///< per member
+  std::vector<Bent> bent;                            ///< by when they first had a hinge
+  std::vector<std::uint32_t> bent_of;                ///< per member; kNone: it has none
   std::vector<double> axial_in_factor;               ///< N, of the geometric stiffness
   std::vector<PlateSupport> plates;
   std::vector<std::vector<std::uint32_t>> plates_on;  ///< per member

@@ -150,6 +150,7 @@ void FrameSolver::Impl::make_members() {
   elements.resize(count);
   point_masses.resize(count);
   in_factor.assign(count, {kNone, kNone, {}});
+  bent_of.assign(count, kNone);
   axial_in_factor.assign(count, 0);
   double stretch = 0, bend = 0;
   for (std::uint32_t m = 0; m < members.size(); ++m) {
@@ -207,17 +208,21 @@ void FrameSolver::Impl::renew(std::uint32_t m) {
     member.node[i] = node;
   }
   member.role = role_of(m, member.held_end);
-  if (member.role != Role::elastic) return;
+  if (member.role != Role::elastic) {
+    bend(m);
+    return;
+  }
   BeamElement& element = elements[m];
   const Vec3 rigid{BeamElement::kRigid, BeamElement::kRigid, BeamElement::kRigid};
   element.spring_a = links.end(m, 0).hinged ? Vec3{} : rigid;
   element.spring_b = links.end(m, 1).hinged ? Vec3{} : rigid;
   member.response = response_of(element);
+  bend(m);
 }
 
 Matrix12 FrameSolver::Impl::mass_matrix(std::uint32_t m) const {
   const Member& member = members[m];
-  BeamElement element = elements[m];
+  BeamElement element = unbent(m);
   element.mass += member.plate_mass;
   Matrix12 mass = mass_of(element);
   for (const PointMass& point : point_masses[m]) {

@@ -15,11 +15,11 @@
 namespace sunder {
 namespace {
 
-constexpr double kSlop = 1e-4;      // m of overlap that is left alone: contacts stay
-constexpr double kPushShare = 0.2;  // of the rest that one step removes
-constexpr double kPushSpeed = 1;    // m/s, at most
+constexpr double kSlop = 1e-4;          // m of overlap that is left alone: contacts stay
+constexpr double kPushShare = 0.2;      // of the rest that one step removes
+constexpr double kPushSpeed = 1;        // m/s, at most
 constexpr double kSettledPush = 1e-13;  // m; the same for displacements
-constexpr double kSettled = 1e-11;  // m/s; the solver stops when no row changes by more
+constexpr double kSettled = 1e-11;      // m/s; the solver stops when no row changes by more
 
 Vec3 ours(const btVector3& v) {
   return {v.x(), v.y(), v.z()};

@@ -2,6 +2,7 @@
 // Which joints fail: by their load, by the buckling or the lost bracing of a post, by a hit.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "sim/collapse_run.hpp"
 
@@ -14,6 +15,24 @@ constexpr double kTogether = 0.9;
 /// Rounds of breaking and redistribution in a step; what is over its strength then waits for the next.
 constexpr int kMostRounds = 100;
 
+/// Share of its bending moments with which a load lies on the failure surface; 0: it is beyond it
+/// without them.
+double share_of_moments(const JointLoad& load, const JointStrength& strength) {
+  const auto fails = [&](double share) {
+    JointLoad part = load;
+    part.torque.y *= share;
+    part.torque.z *= share;
+    return utilisation(part, strength).total >= 1;
+  };
+  if (fails(0)) return 0;
+  double low = 0, high = 1;
+  for (int round = 0; round < 60; ++round) {
+    const double middle = 0.5 * (low + high);
+    (fails(middle) ? high : low) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
 void CollapseRun::break_overloaded() {
@@ -22,12 +41,12 @@ void CollapseRun::break_overloaded() {
   read_loads(overloads);
   check_hits(failures);
   check_posts(overloads);
-  if (!breaks_) return;
+  if (!breaks_) return give_way(broken_before);
   if (motion_->redistributes()) keep_most_utilised(overloads);
   failures.insert(failures.end(), overloads.begin(), overloads.end());
   break_joints(std::move(failures));
-  cascade();
   give_way(broken_before);
+  cascade();
 }
 
 /// Loads redistribute after each break: most utilised first, until what is left carries.
@@ -49,35 +68,45 @@ void CollapseRun::keep_most_utilised(std::vector<Failure>& failures) const {
   std::erase_if(failures, [&](const Failure& f) { return f.utilisation < kTogether * most; });
 }
 
-/// What a projectile met stood as if fixed. If joints of it broke under the blow, it could not give
-/// more impulse than they bore: the projectile keeps the rest of its speed.
+/// What a projectile met stood as if fixed. If joints of it broke under the blow, or it ran ahead,
+/// the projectile keeps what the frame did not take up of its momentum.
 void CollapseRun::give_way(std::size_t broken_before) {
-  if (!motion_->redistributes() || result_.broken_joints.size() == broken_before) return;
-  std::vector<std::pair<std::uint32_t, double>> over;  // part, utilisation
-  for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
-    const JointBreak& broken = result_.broken_joints[i];
-    for (const std::uint32_t part : {frame_.joints[broken.joint].a, frame_.joints[broken.joint].b})
-      over.emplace_back(part, broken.utilisation);
-  }
-  for (std::size_t s = 0; s < shots_.size(); ++s) {
-    double most = 0;
-    for (const Contact& contact : world_.contacts()) {
-      if (shots_[s].body == kNoBody ||
-          (contact.a != shots_[s].body && contact.b != shots_[s].body))
-        continue;
-      for (const auto& [part, utilisation] : over)
-        if (part != kNoPart && part == struck_part(contact, shots_[s].body))
-          most = std::max(most, utilisation);
+  if (!motion_->redistributes()) return;
+  for (std::size_t i = 0; i < shots_.size(); ++i) {
+    Shot& shot = shots_[i];
+    if (shot.body == kNoBody) continue;
+    std::set<std::uint32_t> struck;
+    for (const Contact& contact : world_.contacts())
+      if (contact.a == shot.body || contact.b == shot.body)
+        struck.insert(struck_part(contact, shot.body));
+    struck.erase(kNoPart);
+    const double mass = scene_.projectiles[i].mass;
+    const Vec3 now = world_.velocity(shot.body);
+    const Vec3 lost = mass * (shot.velocity - now);
+    shot.given = struck.empty() ? Vec3{} : shot.given + lost;
+    Vec3 back;
+    for (const std::uint32_t part : struck) {
+      const double share = borne_share(part, broken_before);
+      if (share < 1 || motion_->borne(part) < 1) back = back + motion_->give_back(part, share);
     }
-    if (most <= 1) continue;
-    const Vec3 now = world_.velocity(shots_[s].body);
-    const Vec3 fall{0, -scene_.simulation.gravity * last_dt_, 0};
-    const Vec3 free = shots_[s].velocity + fall;
+    if (back == Vec3{}) continue;
+    back = std::min(1.0, length(shot.given) / length(back)) * back;
+    shot.given = shot.given - back;
     const double before = world_.kinetic_energy();
-    world_.set_velocity(shots_[s].body, free + (1 / most) * (now - free),
-                        world_.angular_velocity(shots_[s].body));
+    world_.set_velocity(shot.body, now + (1 / mass) * back, world_.angular_velocity(shot.body));
     result_.energy.contact -= world_.kinetic_energy() - before;
   }
+}
+
+/// By the utilisation at which its joints broke in this step; 1: none did.
+double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before) const {
+  double most = 1;
+  for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
+    const JointBreak& broken = result_.broken_joints[i];
+    const FrameJoint& joint = frame_.joints[broken.joint];
+    if (joint.a == part || joint.b == part) most = std::max(most, broken.utilisation);
+  }
+  return 1 / most;
 }
 
 /// The part that a ball touches; kNoPart: something else.
@@ -97,7 +126,7 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
       continue;
     }
     const JointLoad load = motion_->load(j);
-    const Utilisation use = utilisation(load, joint.strength);
+    const Utilisation use = demand_on(j, load);
     state.utilisation = use.total;
     result_.max_utilisation = std::max(result_.max_utilisation, use.total);
     if (!state.is_read || use.total >= static_cast<double>(state.peak.utilisation)) {
@@ -113,6 +142,39 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
       failures.push_back({j, use.total, "strength", frame_.classes[joint.joint_class].interaction,
                           std::string(use.component), true});
   }
+}
+
+/// Of a hinge that turns: what breaks it, its rotation or what it carries besides its moments.
+Utilisation CollapseRun::demand_on(std::uint32_t j, const JointLoad& load) {
+  const FrameJoint& joint = frame_.joints[j];
+  Utilisation use = utilisation(load, joint.strength);
+  if (joints_[j].yield == kNoPart) return use;
+  const FrameMotion::HingeState hinge = motion_->hinge(j);
+  double& farthest = result_.yielded_joints[joints_[j].yield].rotation;
+  farthest = std::max(farthest, hinge.rotation);
+  if (!hinge.flows) return use;
+  use = utilisation({load.force, {load.torque.x, 0, 0}}, joint.strength);
+  const double turned = hinge.rotation / frame_.classes[joint.joint_class].rotation_capacity;
+  if (turned > use.total) use.total = turned, use.component = "rotation";
+  return use;
+}
+
+/// What can turn bends instead of breaking.
+bool CollapseRun::yields(const Failure& failure) {
+  const std::uint32_t j = failure.joint;
+  const FrameJoint& joint = frame_.joints[j];
+  if (failure.mode != "strength" || frame_.classes[joint.joint_class].rotation_capacity <= 0 ||
+      motion_->hinge(j).flows)
+    return false;
+  const JointLoad load = motion_->load(j);
+  const double share = share_of_moments(load, joint.strength);
+  if (share <= 0 || !motion_->yield(j, {0, share * load.torque.y, share * load.torque.z}))
+    return false;
+  if (joints_[j].yield == kNoPart) {
+    joints_[j].yield = static_cast<std::uint32_t>(result_.yielded_joints.size());
+    result_.yielded_joints.push_back({j, now_, failure.utilisation, 0});
+  }
+  return true;
 }
 
 void CollapseRun::check_posts(std::vector<Failure>& failures) {
@@ -171,7 +233,7 @@ void CollapseRun::break_joints(std::vector<Failure> failures) {
   std::ranges::stable_sort(failures, {}, &Failure::joint);
   for (std::size_t i = 0; i < failures.size(); ++i) {
     const Failure failure = failures[i];
-    if (!joints_[failure.joint].intact) continue;
+    if (!joints_[failure.joint].intact || yields(failure)) continue;
     break_joint(failure);
     const std::uint32_t splice = posts_.unbraced_splice(failure.joint);
     if (breaks_ && splice != kNoPart)

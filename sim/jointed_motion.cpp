@@ -26,9 +26,7 @@ class JointedMotion final : public FrameMotion {
   void settle(const Progress& progress) override;
   void follow(double now, double dt, bool ends_step) override;
   JointLoad load(std::uint32_t joint) const override { return joints_[joint].load; }
-  bool is_live(std::uint32_t joint) const override {
-    return is_moving(frame_.joints[joint].a);
-  }
+  bool is_live(std::uint32_t joint) const override { return is_moving(frame_.joints[joint].a); }
   void break_joint(std::uint32_t joint, bool bears_on) override;
   bool redistributes() const override { return false; }
   bool settle_breaks() override { return false; }
@@ -144,9 +142,9 @@ void JointedMotion::settle(const Progress& progress) {
   const int iterations = static_cast<int>(simulation.iterations);
   for (std::uint64_t i = 0; i < steps; ++i) {
     const bool is_first = simulation.warm_start && i < kFirstSteps;
-    world_.set_iterations(is_first ? std::max(iterations, std::min(kFirstIterations * iterations,
-                                                                   kMostIterations))
-                                   : iterations);
+    world_.set_iterations(
+        is_first ? std::max(iterations, std::min(kFirstIterations * iterations, kMostIterations))
+                 : iterations);
     world_.step(simulation.step);
     if (2 * i >= steps) note_reactions();
     if (progress)
@@ -171,8 +169,7 @@ void JointedMotion::note_reactions() {
     const FrameJoint& joint = frame_.joints[j];
     if (joint.b != kNoPart) continue;
     const JointReaction reaction = world_.joint_reaction(joints_[j].id);
-    const Quaternion turn =
-        pose(joint.a).rotation * conjugate(rotation_of(solids_[joint.a].axes));
+    const Quaternion turn = pose(joint.a).rotation * conjugate(rotation_of(solids_[joint.a].axes));
     support->force = support->force + rotate(turn, joint.axes * reaction.force);
     support->torque = support->torque + rotate(turn, joint.axes * reaction.torque);
     ++support;
@@ -203,8 +200,7 @@ void JointedMotion::break_joint(std::uint32_t j, bool bears_on) {
   const FrameJoint& joint = frame_.joints[j];
   joints_[j].intact = false;
   world_.remove_joint(joints_[j].id);
-  if (!bears_on && joint.b != kNoPart)
-    world_.separate(parts_[joint.a].body, parts_[joint.b].body);
+  if (!bears_on && joint.b != kNoPart) world_.separate(parts_[joint.a].body, parts_[joint.b].body);
 }
 
 void JointedMotion::rejoin(std::span<const std::uint32_t> joints) {
@@ -215,9 +211,9 @@ void JointedMotion::rejoin(std::span<const std::uint32_t> joints) {
     const Pose moved = pose(joint.a) * inverse(pose_of(solids_[joint.a]));
     const Axes axes{rotate(moved.rotation, joint.axes.x), rotate(moved.rotation, joint.axes.y),
                     rotate(moved.rotation, joint.axes.z)};
-    joints_[j].id = world_.add_joint({parts_[joint.a].body, parts_[joint.b].body,
-                                      moved * joint.point, axes,
-                                      frame_.classes[joint.joint_class].rigid});
+    joints_[j].id =
+        world_.add_joint({parts_[joint.a].body, parts_[joint.b].body, moved * joint.point, axes,
+                          frame_.classes[joint.joint_class].rigid});
   }
 }
 

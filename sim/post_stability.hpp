@@ -23,8 +23,8 @@ class PostStability {
 
   void break_joint(std::uint32_t joint);
 
-  /// Between what braces it, times the factors of its ends: 1 for two held ends, 2 for one; infinity
-  /// for a piece that nothing holds.
+  /// Between what braces it, times the factors of its ends: 1 for two held ends, 2 for one;
+  /// infinity for a piece that nothing holds.
   FreeLength free_length(std::uint32_t post) const;
   /// Compression that the post bears about its weaker axis, N; infinity where the rule checks none.
   /// Euler's load is cut at A f_y. Cached.
@@ -36,15 +36,16 @@ class PostStability {
   /// What lets go when a post buckles: the splice at an unbraced node nearest to the middle of its
   /// free length; all joints of a post without such a node.
   std::vector<std::uint32_t> joints_of_buckling(std::uint32_t post) const;
-  /// The paper's rule: the splice at the node of a broken beam joint when it was the last beam joint
-  /// there; kNoPart: none. Only with the rule "unbraced".
+  /// The paper's rule: the splice at the node of a broken beam joint when it was the last beam
+  /// joint there; kNoPart: none. Only with the rule "unbraced".
   std::uint32_t unbraced_splice(std::uint32_t broken_joint) const;
 
  private:
   struct Reach {
     double length = 0;  ///< of the posts beyond the end, m
     bool held = false;
-    std::vector<std::pair<std::uint32_t, double>> splices;  ///< on the way, and how far from the end
+    std::vector<std::pair<std::uint32_t, double>>
+        splices;  ///< on the way, and how far from the end
   };
   bool is_held(std::uint32_t beam, std::uint32_t node) const;
   bool is_braced(std::uint32_t node, Vec3 direction) const;
@@ -57,10 +58,10 @@ class PostStability {
   const Frame& frame_;
   std::string rule_;
   std::vector<std::uint32_t> posts_;
-  std::vector<std::uint8_t> intact_;                       ///< by joint
-  std::vector<std::vector<std::uint32_t>> joints_at_;      ///< by node: those of members
-  std::vector<std::vector<std::uint32_t>> joints_of_;      ///< by member
-  std::vector<double> resistance_;                         ///< by member; negative: not known
+  std::vector<std::uint8_t> intact_;                   ///< by joint
+  std::vector<std::vector<std::uint32_t>> joints_at_;  ///< by node: those of members
+  std::vector<std::vector<std::uint32_t>> joints_of_;  ///< by member
+  std::vector<double> resistance_;                     ///< by member; negative: not known
 };
 
 }  // namespace sunder

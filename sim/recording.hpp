@@ -27,51 +27,53 @@ struct Track {
 
 /// Something broke.
 struct BreakEvent {
-  double time = 0;           ///< s
+  double time = 0;  ///< s
   std::uint32_t wall = 0;
-  Vec3 point;                ///< of the contact, world
-  double speed = 0;          ///< of approach, m/s
-  double utilisation = 0;    ///< demand by capacity where it was largest
+  Vec3 point;              ///< of the contact, world
+  double speed = 0;        ///< of approach, m/s
+  double utilisation = 0;  ///< demand by capacity where it was largest
   std::uint32_t bonds_broken = 0, chunks_freed = 0;
 };
 
 /// A wall as it is after the last break: chunks that broke stand there as the parts they became,
 /// from the start, so that one set of meshes serves the whole run.
 struct RecordedWall {
-  WallAsset asset;                    ///< asset.wall has position and rotation of the standing wall
-  std::vector<std::uint32_t> track;   ///< per chunk: its last track; kNoTrack: it never moved
+  WallAsset asset;                   ///< asset.wall has position and rotation of the standing wall
+  std::vector<std::uint32_t> track;  ///< per chunk: its last track; kNoTrack: it never moved
 };
 
 struct RecordedProjectile {
   Projectile projectile;
-  std::uint32_t track = kNoTrack;  ///< its first pose is at projectile.time; before, it is not there
+  std::uint32_t track =
+      kNoTrack;  ///< its first pose is at projectile.time; before, it is not there
 };
 
-/// A member, slab or panel of a building: an outline in the XY plane of its own frame, extruded over
-/// z = ±half_length.
+/// A member, slab or panel of a building: an outline in the XY plane of its own frame, extruded
+/// over z = ±half_length.
 struct RecordedPart {
   std::string name;
-  Region outline;               ///< m
-  double half_length = 0;       ///< m
-  std::string material;         ///< "steel", "concrete-c30" …
-  double mass = 0;              ///< kg
-  Pose standing;                ///< of its frame before the track
+  Region outline;          ///< m
+  double half_length = 0;  ///< m
+  std::string material;    ///< "steel", "concrete-c30" …
+  double mass = 0;         ///< kg
+  Pose standing;           ///< of its frame before the track
   std::uint32_t track = kNoTrack;
-  bool has_ends = false;        ///< a member: its ends show the stress of its joints
+  bool has_ends = false;  ///< a member: its ends show the stress of its joints
   double removed = std::numeric_limits<double>::infinity();  ///< s: taken away, not there any more
 };
 
-/// A joint between parts. `end`: 0 at z = -half_length of the part, 1 at the other end, 2 in between.
+/// A joint between parts. `end`: 0 at z = -half_length of the part, 1 at the other end, 2 in
+/// between.
 struct RecordedJoint {
   std::string name;
   std::uint32_t part_a = 0, part_b = kNoTrack;  ///< kNoTrack: the ground
   std::uint8_t end_a = 2, end_b = 2;
-  Vec3 point;                                   ///< where it stood, world
+  Vec3 point;                                               ///< where it stood, world
   double broken = std::numeric_limits<double>::infinity();  ///< s
 };
 
-/// Load of a joint at a sampling time: the one of largest utilisation since the time before. Axes of
-/// the joint: x along the member, y and z those of its section (see FrameJoint).
+/// Load of a joint at a sampling time: the one of largest utilisation since the time before. Axes
+/// of the joint: x along the member, y and z those of its section (see FrameJoint).
 struct JointSample {
   std::array<float, 3> force{}, torque{};  ///< N, N m
   float force_utilisation = 0, torque_utilisation = 0, utilisation = 0;

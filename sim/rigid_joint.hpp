@@ -31,12 +31,12 @@ struct RigidJoint {
   bool corrects_apart = false;
 
   // Of the last step.
-  Vec3 force, torque;      ///< impulses on a, joint's axes, N s and N m s; a warm start's guess
-  double dt = 0;           ///< its length, s; 0: none yet
-  Axes axes;               ///< world, when the impulses acted
+  Vec3 force, torque;  ///< impulses on a, joint's axes, N s and N m s; a warm start's guess
+  double dt = 0;       ///< its length, s; 0: none yet
+  Axes axes;           ///< world, when the impulses acted
   std::array<double, 6> drift{};  ///< of b against a along the rows then, m and rad
-  Vec3 arm_a, arm_b;       ///< from the centres of mass to the middle between the two points
-  std::uint32_t island = 0;  ///< slot of the island's first body
+  Vec3 arm_a, arm_b;              ///< from the centres of mass to the middle between the two points
+  std::uint32_t island = 0;       ///< slot of the island's first body
 
   /// Distance of the two bodies' ideas of the point now, m.
   double gap() const;

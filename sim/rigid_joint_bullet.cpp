@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/rigid_joint.hpp"
-
 #include <btBulletDynamicsCommon.h>
 
 #include <array>
 #include <cassert>
+
+#include "sim/rigid_joint.hpp"
 
 namespace sunder {
 namespace {

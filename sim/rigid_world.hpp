@@ -14,7 +14,7 @@ namespace sunder {
 
 /// Handle of a body or collider; counts up, never used twice.
 using BodyId = std::uint32_t;
-constexpr BodyId kGround = 0;              ///< the ground, if the world has one
+constexpr BodyId kGround = 0;  ///< the ground, if the world has one
 constexpr BodyId kNoBody = 0xFFFFFFFFu;
 
 /// Rough surfaces: a pair takes the geometric mean of each.
@@ -30,14 +30,14 @@ using JointId = std::uint32_t;
 enum class JointSolver : std::uint8_t { sequential_impulse, nncg, dantzig, lemke };
 
 struct WorldParams {
-  double gravity = 9.81;       ///< m/s², along -Y
-  int iterations = 20;         ///< of the sequential-impulse solver
+  double gravity = 9.81;  ///< m/s², along -Y
+  int iterations = 20;    ///< of the sequential-impulse solver
   JointSolver joint_solver = JointSolver::sequential_impulse;
-  bool warm_start = true;      ///< joints start from the impulses of the last step
-  bool has_ground = true;      ///< the half-space y <= ground_height
-  double ground_height = 0;    ///< m
+  bool warm_start = true;    ///< joints start from the impulses of the last step
+  bool has_ground = true;    ///< the half-space y <= ground_height
+  double ground_height = 0;  ///< m
   Surface ground = {0.6, 0.1};
-  bool sleep = true;           ///< bodies that rest are taken out of the solver
+  bool sleep = true;  ///< bodies that rest are taken out of the solver
 };
 
 /// A convex prism: polygon in the XY plane of its own frame, strictly convex, counter-clockwise,
@@ -52,12 +52,12 @@ struct Prism {
 /// A moving body. It is described in a *design frame* (for a wall's chunk: the wall's frame), so
 /// that its shape never has to be moved: `pose` says where that frame is in the world.
 struct BodyParams {
-  double mass = 1;          ///< kg
-  Vec3 centroid;            ///< design frame
-  SymMat3 inertia;          ///< about the centroid, axes of the design frame, kg m²
-  Pose pose;                ///< of the design frame
-  Vec3 velocity;            ///< of the centroid, world, m/s
-  Vec3 angular_velocity;    ///< world, rad/s
+  double mass = 1;        ///< kg
+  Vec3 centroid;          ///< design frame
+  SymMat3 inertia;        ///< about the centroid, axes of the design frame, kg m²
+  Pose pose;              ///< of the design frame
+  Vec3 velocity;          ///< of the centroid, world, m/s
+  Vec3 angular_velocity;  ///< world, rad/s
   Surface surface;
   /// Contacts are solved in the order of these keys, whatever order bodies were added in, so that
   /// a run does not depend on what was added only to be skipped. Unique, ground below all.
@@ -75,8 +75,8 @@ struct JointParams {
 
 /// What a joint gave body a in the last step, over the step's length.
 struct JointReaction {
-  Vec3 force;   ///< on a, in the joint's axes, N
-  Vec3 torque;  ///< on a, about the joint's point (not a body's centre), in its axes, N m
+  Vec3 force;      ///< on a, in the joint's axes, N
+  Vec3 torque;     ///< on a, about the joint's point (not a body's centre), in its axes, N m
   double gap = 0;  ///< between the two bodies' ideas of the point, m
 };
 
@@ -89,7 +89,7 @@ struct Contact {
   double friction_impulse = 0;      ///< magnitude, N s
   double approach = 0;              ///< speed at which they came together, m/s
   std::uint32_t part_a = 0, part_b = 0;  ///< which of the bodies' prisms
-  Vec3 tangential{};                ///< impulse of friction on a, N s
+  Vec3 tangential{};                     ///< impulse of friction on a, N s
 };
 
 /// Where the energy of a step went, J; positive: lost by the bodies. Impulse times the mean of the
@@ -115,7 +115,8 @@ struct StepWork {
 ///  - friction is one vector in Coulomb's cone, against the sliding;
 ///  - contacts are found and solved in an order of our own keys;
 ///  - no function of the C library whose bits depend on the processor;
-///  - joints are six (or three) of Bullet's rows each, along the joint's own axes, so that their impulses are
+///  - joints are six (or three) of Bullet's rows each, along the joint's own axes, so that their
+///  impulses are
 ///    the load at the joint; Baumgarte's correction of drift with Bullet's share of 0.2 a step.
 /// Not thread-safe; a world per thread is fine.
 class RigidWorld {
@@ -145,8 +146,8 @@ class RigidWorld {
   double inverse_mass_at(BodyId body, Vec3 point, Vec3 direction) const;
   bool is_awake(BodyId body) const;
   void wake(BodyId body);
-  /// For so long the body meets spheres and the ground only: what leaves a hole at speed crushes the
-  /// edges that would jam rigid ones.
+  /// For so long the body meets spheres and the ground only: what leaves a hole at speed crushes
+  /// the edges that would jam rigid ones.
   void exempt(BodyId body, double seconds);
 
   /// Joined bodies do not collide with each other, nor those that are two joints apart.
@@ -183,12 +184,12 @@ class RigidWorld {
   Vec3 weight() const;
   /// Deepest overlap of two bodies when the last step began, m.
   double overlap() const;
-  StepWork work() const;  ///< of the last step
-  double kinetic_energy() const;                ///< of all moving bodies, J
-  double potential_energy() const;              ///< of all moving bodies, above y = 0, J
-  Vec3 momentum() const;                        ///< of all moving bodies, kg m/s
+  StepWork work() const;            ///< of the last step
+  double kinetic_energy() const;    ///< of all moving bodies, J
+  double potential_energy() const;  ///< of all moving bodies, above y = 0, J
+  Vec3 momentum() const;            ///< of all moving bodies, kg m/s
   Vec3 angular_momentum(Vec3 about) const;
-  std::uint32_t body_count() const;             ///< moving ones
+  std::uint32_t body_count() const;  ///< moving ones
 
  private:
   struct Impl;

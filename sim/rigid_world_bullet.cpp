@@ -28,14 +28,14 @@ Body::~Body() = default;
 
 namespace {
 
-constexpr double kTouch = 1e-3;      // m; solids nearer than this touch
-constexpr double kNeighbour = 2e-3;  // m; removing a body wakes what is nearer
-constexpr double kRecall = 0.03;     // m, between a point and what it was a step ago
-constexpr double kSleepAfter = 0.5;  // s
+constexpr double kTouch = 1e-3;           // m; solids nearer than this touch
+constexpr double kNeighbour = 2e-3;       // m; removing a body wakes what is nearer
+constexpr double kRecall = 0.03;          // m, between a point and what it was a step ago
+constexpr double kSleepAfter = 0.5;       // s
 constexpr double kEnergyRounding = 1e-9;  // of the work of an island's impulses
-constexpr double kCompliance = 1e-9;  // m/s per N s: direct solvers need it, joints are redundant
+constexpr double kCompliance = 1e-9;   // m/s per N s: direct solvers need it, joints are redundant
 constexpr double kJointedShare = 0.1;  // of the sleeping speeds: joined bodies creep
-constexpr double kWakeShare = 0.4;   // of the sleeping speeds: a neighbour this fast wakes
+constexpr double kWakeShare = 0.4;     // of the sleeping speeds: a neighbour this fast wakes
 
 btVector3 bullet(Vec3 v) {
   return {v.x, v.y, v.z};
@@ -105,8 +105,8 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
     info.m_numIterations = params.iterations;
     info.m_splitImpulse = 1;
     info.m_splitImpulsePenetrationThreshold = BT_LARGE_FLOAT;
-    const bool is_direct = params.joint_solver == JointSolver::dantzig ||
-                           params.joint_solver == JointSolver::lemke;
+    const bool is_direct =
+        params.joint_solver == JointSolver::dantzig || params.joint_solver == JointSolver::lemke;
     info.m_globalCfm = is_direct ? kCompliance : 0;
     task.warm_joints = params.warm_start;
     add_ground();
@@ -125,8 +125,8 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   WorldParams params;
   Vec3 gravity;
   std::vector<std::unique_ptr<RigidJoint>> joints;  ///< by id; null: removed
-  std::vector<std::unique_ptr<Body>> bodies;  ///< by id; null: removed
-  std::vector<Body*> awake;                   ///< by rank
+  std::vector<std::unique_ptr<Body>> bodies;        ///< by id; null: removed
+  std::vector<Body*> awake;                         ///< by rank
   std::uint32_t moving_count = 0;
   std::vector<Contact> contacts;
   Vec3 reaction, weight;
@@ -276,8 +276,8 @@ void World::set_mass(Body& body, double mass) {
   wake_and_rank(body);
   const double ratio = mass / body.mass;
   body.mass = mass;
-  for (double SymMat3::* each : {&SymMat3::xx, &SymMat3::yy, &SymMat3::zz, &SymMat3::xy,
-                                 &SymMat3::xz, &SymMat3::yz}) {
+  for (double SymMat3::*each :
+       {&SymMat3::xx, &SymMat3::yy, &SymMat3::zz, &SymMat3::xy, &SymMat3::xz, &SymMat3::yz}) {
     body.inertia.*each *= ratio;
     body.inverse_inertia.*each /= ratio;
   }

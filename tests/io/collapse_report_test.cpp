@@ -40,6 +40,7 @@ CollapseResult sample_result() {
   r.broken_joints = {{2, -0.25, 1.125, "strength", "linear", "My"},
                      {0, 0.5, 0, "hit", "ball", ""},
                      {1, 0.75, 1.0625, "buckling", "ec3", ""}};
+  r.yielded_joints = {{1, 0.125, 1.25, 0.03125}};
   r.max_utilisation = 4.75, r.utilisation_at_rest = 0.375;
   r.weight = 840500, r.reaction_error = 1e-6;
   r.supports = {{0, {1, 420000, 2}, {3, 4, 5}}, {1, {-1, 420500, -2}, {6, 7, 8}}};
@@ -49,7 +50,7 @@ CollapseResult sample_result() {
   r.momentum_error = 1e-13, r.penetration_max = 0.0625;
   r.energy = {101, 102, 103, 104, 105, 106, -0.125};
   r.joint_work = 107, r.energy_in = 25700, r.solver_fallbacks = 9;
-  r.damping = 108, r.residual = 1e-12, r.solves = {11, 12, 13};
+  r.damping = 108, r.plastic = 109, r.residual = 1e-12, r.solves = {11, 12, 13};
   r.projectiles = {{"ball", true, false, 10.5, 3.25, 9.75, 2.5e6}};
   r.hash = 0x00ab0000000000cdu;
   r.body_steps_asleep = 9000, r.joint_steps_not_read = 8000, r.poses_not_recorded = 210000;
@@ -87,6 +88,8 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
        "component": ""},
       {"joint": "beam@post_a", "time": 0.75, "utilisation": 1.0625, "mode": "buckling",
        "rule": "ec3", "component": ""}],
+    "yielded_joints": [
+      {"joint": "beam@post_a", "time": 0.125, "utilisation": 1.25, "rotation": 0.03125}],
     "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0,
                   "unheld": 0},
     "broken_at_rest": 1, "broken_bonds": 0, "max_utilisation": 4.75,
@@ -100,7 +103,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
     "momentum_error": 1e-13, "penetration_max": 0.0625,
     "energy": {"in": 25700, "kinetic": 101, "potential": 102, "strain": 103, "fracture": 104,
                "friction": 105, "contact": 106, "numerical": -0.125, "joint": 107,
-               "damping": 108},
+               "damping": 108, "plastic": 109},
     "projectiles": [
       {"name": "ball", "hit": true, "perforated": false, "speed_before": 10.5,
        "residual_speed": 3.25, "ballistic_speed": 9.75, "contact_force": 2.5e6}],

@@ -15,7 +15,8 @@ namespace sunder {
 namespace {
 
 std::size_t count_of(const CollapseResult& result, std::string_view mode) {
-  return static_cast<std::size_t>(std::ranges::count(result.broken_joints, mode, &JointBreak::mode));
+  return static_cast<std::size_t>(
+      std::ranges::count(result.broken_joints, mode, &JointBreak::mode));
 }
 
 Projectile ball(double mass, Vec3 position, Vec3 velocity) {
@@ -130,9 +131,8 @@ TEST(Collapse, RisingLoadBreaksThePostThatReachesItsBucklingResistance) {
     EXPECT_EQ(first.rule, rule);
     const Section& section = scene.frame.sections[1];
     const SteelGrade& steel = scene.frame.steels[0];
-    const double resistance = rule == "ec3"
-                                  ? buckling_resistance(section, steel, {10.5, 10.5})
-                                  : euler_load(section, steel, {10.5, 10.5});
+    const double resistance = rule == "ec3" ? buckling_resistance(section, steel, {10.5, 10.5})
+                                            : euler_load(section, steel, {10.5, 10.5});
     // The sample before the break: largest force at a foot.
     const Recording& recording = r.recording;
     const auto at = std::ranges::lower_bound(recording.sample_times, first.time - 1e-9);
@@ -140,7 +140,9 @@ TEST(Collapse, RisingLoadBreaksThePostThatReachesItsBucklingResistance) {
     double largest = 0;
     for (std::uint32_t j = 0; j < recording.joints.size(); ++j)
       if (recording.joints[j].part_b == kNoTrack)
-        largest = std::max(largest, -static_cast<double>(recording.samples[sample * recording.joints.size() + j].force[0]));
+        largest = std::max(
+            largest,
+            -static_cast<double>(recording.samples[sample * recording.joints.size() + j].force[0]));
     EXPECT_NEAR(largest, resistance, 0.01 * resistance) << rule;
     const double even = (4 * resistance - r.weight) / 36;
     EXPECT_LE(r.first_failure_load, even);
@@ -310,7 +312,8 @@ TEST(PostStability, FreeLengthGrowsWithEachStoreyThatLostItsBeams) {
   EXPECT_DOUBLE_EQ(posts.free_length(post).about_y, 3.5);
   const double braced = posts.resistance(post);
   posts.break_joint(joint_named(frame, "beam_x_0_0_0@post_0_0_0"));
-  // The web lies along z: buckling about y moves the post along z, which the other beam still holds.
+  // The web lies along z: buckling about y moves the post along z, which the other beam still
+  // holds.
   EXPECT_DOUBLE_EQ(posts.free_length(post).about_y, 3.5);
   EXPECT_DOUBLE_EQ(posts.free_length(post).about_z, 7);
   EXPECT_LT(posts.resistance(post), braced);

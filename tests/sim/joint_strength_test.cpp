@@ -12,6 +12,7 @@
 
 #include "meshing/error.hpp"
 #include "meshing/random.hpp"
+#include "sim/plastic_blocks.hpp"
 
 namespace sunder {
 namespace {
@@ -165,37 +166,6 @@ TEST(JointStrength, OfEc3LiesBetweenBoxAndLinear) {
     EXPECT_LE(box, ec3 * (1 + 1e-14)) << "seed " << seed;
     EXPECT_LE(ec3, linear * (1 + 1e-14)) << "seed " << seed;
   }
-}
-
-/// Fully plastic stress blocks with the neutral axis at z of an I of plates, f_y = 1.
-struct Plastic {
-  double axial = 0, moment = 0;
-};
-Plastic plastic_blocks(const Section& s, double z) {
-  Plastic sum;
-  const auto add = [&](double low, double high, double width) {
-    const double cut = std::clamp(z, low, high);
-    sum.axial += width * ((high - cut) - (cut - low));
-    sum.moment += width * ((high * high - cut * cut) - (cut * cut - low * low)) / 2;
-  };
-  const double top = s.height / 2, clear = top - s.flange;
-  add(-top, -clear, s.width);
-  add(-clear, clear, s.web);
-  add(clear, top, s.width);
-  return sum;
-}
-
-/// M/M_pl where N/N_pl : M/M_pl is `axial` : `moment`, and N/N_pl, by bisection of the axis.
-Plastic exact_strength(const Section& s, double axial, double moment) {
-  double low = -s.height / 2, high = 0;  // from all tension to bending alone
-  Plastic found;
-  for (int i = 0; i < 100; ++i) {
-    const double z = (low + high) / 2;
-    const Plastic blocks = plastic_blocks(s, z);
-    found = {blocks.axial / s.area, blocks.moment / s.wpl_y};
-    (found.axial * moment > found.moment * axial ? low : high) = z;
-  }
-  return found;
 }
 
 JointLoad axial_and_moment(const JointStrength& strength, double n, double m) {

@@ -80,14 +80,13 @@ TEST(RigidJoint, ColumnCarriesWhatIsAboveEachJoint) {
 TEST(RigidJoint, JoinedBodiesFlyAsOne) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const bool warm = seed % 2 == 0;
-    RigidWorld world(
-        {.iterations = 50, .warm_start = warm, .has_ground = false, .sleep = false});
+    RigidWorld world({.iterations = 50, .warm_start = warm, .has_ground = false, .sleep = false});
     const auto random = [&](std::uint64_t n) { return 2 * random_unit(seed, n) - 1; };
     const BodyId a = add_box(world, {0.5, 0.1, 0.2}, 3, {0, 0, 0},
                              {random(1), random(2), random(3)}, {random(4), random(5), random(6)});
-    const BodyId b = add_box(world, {0.2, 0.4, 0.1}, 50, {0.7, 0.2, 0},
-                             {random(7), random(8), random(9)},
-                             {random(10), random(11), random(12)});
+    const BodyId b =
+        add_box(world, {0.2, 0.4, 0.1}, 50, {0.7, 0.2, 0}, {random(7), random(8), random(9)},
+                {random(10), random(11), random(12)});
     world.add_joint({a, b, {0.5, 0.1, 0}, {}});
     const Vec3 momentum = world.momentum();
     const Vec3 start = (1.0 / 53) * (3 * world.centre(a) + 50 * world.centre(b));
@@ -229,8 +228,7 @@ TEST(RigidJoint, WarmStartTakesTheSagAway) {
     RigidWorld world({.iterations = 10, .warm_start = warm, .sleep = false});
     BodyId below = kGround;
     for (int i = 0; i < 10; ++i) {
-      const BodyId post =
-          add_box(world, {0.1, 0.5, 0.1}, i == 9 ? 5000 : 100, {0, i + 0.5, 0});
+      const BodyId post = add_box(world, {0.1, 0.5, 0.1}, i == 9 ? 5000 : 100, {0, i + 0.5, 0});
       world.add_joint({post, below, {0, 1.0 * i, 0}, {}});
       below = post;
     }

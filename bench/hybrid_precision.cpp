@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Work against precision: what rigid bodies make of a building that stands, and what it costs.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bench/collapse_accuracy.hpp"
+#include "bench/hybrid_bench.hpp"
+#include "sim/frame_solver.hpp"
+#include "sim/step_times.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr double kFrame = 1.0 / 60, kAtRest = 3, kMean = 0.5;  // s
+
+/// The elastic frame, shear on.
+struct Truth {
+  double sag = 0;              ///< mean of the roof, m
+  std::vector<double> foot;    ///< by joint, N; 0: none
+  std::vector<double> moment;  ///< by joint, M_y of beams' ends, N m
+  double largest_moment = 0;
+};
+
+Truth truth_of(const Frame& frame) {
+  FrameSolver solver(frame);
+  solver.solve({});
+  Truth truth;
+  const Assembly assembly = assembly_of(frame);
+  for (const Assembly::Top& top : assembly.tops)
+    truth.sag -= solver.displacement(frame.members[top.part].to).y /
+                 static_cast<double>(assembly.tops.size());
+  for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
+    const bool is_foot = frame.joints[j].b == kNoPart;
+    const bool is_beam = frame.joints[j].kind == FrameJoint::Kind::beam_end;
+    truth.foot.push_back(is_foot ? solver.reaction(j).y : 0);
+    truth.moment.push_back(is_beam ? solver.joint_load(j).torque.y : 0);
+    truth.largest_moment = std::max(truth.largest_moment, std::fabs(truth.moment.back()));
+  }
+  return truth;
+}
+
+/// Errors of feet and beam ends, from sums of reactions.
+void print_errors(const Frame& frame, const Truth& truth, const std::vector<Reaction>& sums,
+                  double count) {
+  double foot = 0, most = 0, squares = 0, beams = 0;
+  for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
+    const FrameJoint& joint = frame.joints[j];
+    if (joint.b == kNoPart)
+      foot = std::max(foot, std::fabs((joint.axes * sums[j].force).y / count / truth.foot[j] - 1));
+    if (joint.kind != FrameJoint::Kind::beam_end) continue;
+    const double side = joint.end_a == 1 ? 1 : -1;
+    const double off = side * sums[j].torque.y / count - truth.moment[j];
+    most = std::max(most, std::fabs(off));
+    squares += off * off;
+    ++beams;
+  }
+  std::printf(" %.0f %% | %.0f %% / %.0f %% |", 100 * foot, 100 * most / truth.largest_moment,
+              100 * std::sqrt(squares / beams) / truth.largest_moment);
+}
+
+Projectile ball() {
+  Projectile p;
+  p.radius = 0.3;
+  p.mass = 888;
+  p.position = {-1, 1.9, 12.05};
+  p.velocity = {40, 0, 0};
+  return p;
+}
+
+void print_rigid(const Size& size, const Frame& frame, const Truth& truth, const Method& method) {
+  const Assembly assembly = assembly_of(frame);
+  const auto world = frame_world(assembly, method);
+  const int steps = static_cast<int>(std::lround(kAtRest / method.step));
+  const int taken = static_cast<int>(std::lround(kMean / method.step));
+  std::vector<double> rest, rings;
+  std::vector<Reaction> sums(assembly.joints.size());
+  for (int i = 0; i < steps; ++i) {
+    rest.push_back(step_once(*world, method, i));
+    if (i < steps - taken) continue;
+    for (std::uint32_t j = 0; j < sums.size(); ++j) {
+      const Reaction now = world->reaction(j);
+      sums[j].force = sums[j].force + now.force;
+      sums[j].torque = sums[j].torque + now.torque;
+    }
+  }
+  double sag = 0;
+  for (const Assembly::Top& top : assembly.tops)
+    sag += (top.stood.y - world->place(top.part, top.stood).y) /
+           static_cast<double>(assembly.tops.size());
+  world->add_ball(ball());
+  for (int i = 0; i < taken; ++i) rings.push_back(step_once(*world, method, steps + i));
+  std::printf("| %s | %s | %d | 1/%.0f s | %.3g (%+.3g) |", name_of(size).c_str(),
+              name_of(method).c_str(), method.iterations, 1 / method.step, 1e3 * sag,
+              1e3 * (sag - truth.sag));
+  print_errors(frame, truth, sums, taken);
+  std::printf(" %.3g | %.3g |\n", percentile(rest, 0.5), percentile(rings, 0.5));
+  std::fflush(stdout);
+}
+
+void print_hybrid(const Size& size, const Frame& frame, const Truth& truth, double step) {
+  Standing standing(frame, step);
+  standing.judge();
+  const auto steps = [&](int count) {
+    std::vector<double> ms;
+    for (int i = 0; i < count; ++i)
+      ms.push_back(cost_ms([&] {
+        standing.step();
+        standing.judge();
+      }));
+    return percentile(ms, 0.5);
+  };
+  steps(5);
+  const double rest = steps(240);
+  standing.break_joints(beam_joints(frame, 1, false));
+  const double rings = steps(60);
+  std::printf("| %s | hybrid | – | 1/%.0f s | %.4g (the reference) | – | – | %.2g | %.3g |\n",
+              name_of(size).c_str(), 1 / step, 1e3 * truth.sag, rest, rings);
+}
+
+}  // namespace
+
+void measure_precision() {
+  std::printf(
+      "\n## Work against precision\n\n| building | method | iterations | step | mean sag mm (off) "
+      "| worst foot off | beam ends' moments off by the largest: worst / rms | standing ms a step "
+      "| "
+      "hit or ringing ms a step |\n|---|---|---|---|---|---|---|---|---|\n");
+  using enum Method::Engine;
+  for (const Size& size : {Size{3, 3, 12}, Size{4, 5, 6}}) {
+    const Frame frame = building_of(size);
+    const Truth truth = truth_of(frame);
+    for (const int iterations : {10, 50, 200, 1000})
+      print_rigid(size, frame, truth, {.engine = bullet, .iterations = iterations, .step = kFrame});
+    print_rigid(size, frame, truth, {.engine = cold, .iterations = 200, .step = kFrame});
+    print_rigid(size, frame, truth, {.engine = warm, .iterations = 50, .step = kFrame});
+    print_rigid(size, frame, truth, {.engine = warm, .iterations = 30, .step = 1.0 / 240});
+    print_hybrid(size, frame, truth, kFrame);
+    print_hybrid(size, frame, truth, 1.0 / 240);
+  }
+}
+
+}  // namespace sunder
