@@ -105,7 +105,8 @@ void CollapseRun::settle() {
   Vec3 sum;
   for (const SupportReaction& support : result_.supports) sum = sum + support.force;
   if (result_.weight > 0)
-    result_.reaction_error = length(sum - Vec3{0, result_.weight, 0}) / result_.weight;
+    result_.reaction_error =
+        length(sum - Vec3{0, result_.weight - motion_->unsupported(), 0}) / result_.weight;
   note_sag();
 }
 
@@ -151,7 +152,8 @@ void CollapseRun::start() {
                                " m/s when it should have settled; give a longer \"settle\", more "
                                "\"iterations\" or a shorter \"step\"");
   if (result_.reaction_error > kUneven)
-    result_.warnings.push_back("the supports carry " + std::to_string(100 * result_.reaction_error) +
+    result_.warnings.push_back("the supports carry " +
+                               std::to_string(100 * result_.reaction_error) +
                                " % more or less than the building weighs: it has not settled, or "
                                "parts of it overlap");
   breaks_ = scene_.rules.breaking;
@@ -233,9 +235,8 @@ void CollapseRun::advance(double dt, bool ends_step) {
   // What stands has next to no momentum: the impulse of its weight is the measure then.
   largest_momentum_ =
       std::max({largest_momentum_, length(before), length(after), length(world_.weight())});
-  largest_momentum_error_ =
-      std::max(largest_momentum_error_,
-               length(after - before - world_.reaction() - world_.weight()));
+  largest_momentum_error_ = std::max(largest_momentum_error_,
+                                     length(after - before - world_.reaction() - world_.weight()));
   result_.penetration_max = std::max(result_.penetration_max, world_.overlap());
   const StepWork work = world_.work();
   result_.energy.contact += work.contact;

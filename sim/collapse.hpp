@@ -17,11 +17,11 @@ namespace sunder {
 /// How posts fail beside their joints.
 struct BreakingRules {
   /// "ec3": a post between braced nodes fails at the buckling resistance of EN 1993-1-1, 6.3.1;
-  /// "euler": at its Euler load; "unbraced": the joint of two posts fails when the last beam joint at
-  /// it is gone (the paper's rule); "none".
+  /// "euler": at its Euler load; "unbraced": the joint of two posts fails when the last beam joint
+  /// at it is gone (the paper's rule); "none".
   std::string post_rule = "ec3";
-  bool breaking = true;       ///< false: joints hold whatever happens, to see sag and forces
-  bool hit_breaks = true;     ///< a joint that a projectile touches fails (the paper's rule)
+  bool breaking = true;    ///< false: joints hold whatever happens, to see sag and forces
+  bool hit_breaks = true;  ///< a joint that a projectile touches fails (the paper's rule)
   /// Loads are judged by their mean over so long, s (first-order lag): a blow of impulse J on rigid
   /// members shows as J/load_time, as on an elastic one, where it is J ω. The default is T/2π of a
   /// loaded floor beam (IPE300, 6 m, a slab's weight: 8 Hz). 0: the force of a single step, as the
@@ -41,9 +41,9 @@ struct GroundMotion {
 /// What happens to the building besides projectiles.
 struct Scenario {
   std::vector<std::string> remove;  ///< parts taken away at time 0 (alternate path method)
-  double load_rate = 0;             ///< N/m² per s by which every slab's live load rises from time 0
-                                    ///< until the first joint or post fails
-  GroundMotion ground_motion;       ///< empty: none
+  double load_rate = 0;        ///< N/m² per s by which every slab's live load rises from time 0
+                               ///< until the first joint or post fails
+  GroundMotion ground_motion;  ///< empty: none
 };
 
 struct CollapseScene {
@@ -56,8 +56,8 @@ struct CollapseScene {
 };
 
 struct CollapseParams {
-  bool skip = true;           ///< false: nothing sleeps, loads of all joints are read in every step
-  bool keep_history = true;   ///< loads of joints go into the recording
+  bool skip = true;          ///< false: nothing sleeps, loads of all joints are read in every step
+  bool keep_history = true;  ///< loads of joints go into the recording
   Progress progress = {};
 };
 
@@ -74,8 +74,8 @@ struct JointBreak {
   double utilisation = 0;  ///< demand by capacity of what broke it
   /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed"
   std::string_view mode;
-  std::string rule;            ///< interaction, "ec3", "euler", "paper"; name of the projectile
-  std::string component;   ///< N, Vy, Vz, T, My, Mz, rotation; "" otherwise
+  std::string rule;       ///< interaction, "ec3", "euler", "paper"; name of the projectile
+  std::string component;  ///< N, Vy, Vz, T, My, Mz, rotation; "" otherwise
 };
 
 /// A joint that became a plastic hinge.
@@ -96,31 +96,32 @@ struct CollapseResult {
   std::uint64_t steps = 0, substeps = 0;
   double simulated_s = 0;
   double step_ms_median = 0, step_ms_p95 = 0, step_ms_max = 0;
-  std::uint64_t bodies = 0;       ///< moving bodies at the end
-  std::uint64_t parts_freed = 0;  ///< members, slabs, walls no longer joined to the ground
-  std::vector<JointBreak> broken_joints;  ///< by time, then joint
+  std::uint64_t bodies = 0;                ///< moving bodies at the end
+  std::uint64_t parts_freed = 0;           ///< members, slabs, walls no longer joined to the ground
+  std::vector<JointBreak> broken_joints;   ///< by time, then joint
   std::vector<JointYield> yielded_joints;  ///< by time, then joint
   std::uint64_t broken_at_rest = 0;       ///< of them, before a projectile, removal, load or motion
   double max_utilisation = 0;             ///< of any joint or post at any time from 0 on
   double utilisation_at_rest = 0;         ///< at time 0
   double weight = 0;                      ///< of the building, N
   std::vector<SupportReaction> supports;  ///< at the end of settling: mean of its last half
-  double reaction_error = 0;       ///< |sum of the supports + weight| / weight
+  double reaction_error = 0;         ///< |sum of the supports − weight that they carry| / weight
   double sag_mean = 0, sag_max = 0;  ///< of the highest nodes of posts at time 0, m down
   std::string sag_node;              ///< where it is largest
   double sag_end = 0;                ///< largest of those still standing at the end, m
   double joint_gap = 0;              ///< widest between the two sides of an intact joint, m
-  double first_failure_load = 0;     ///< live load at the first failure of a rising load, N/m²; 0: none
-  double reactions[3] = {};          ///< impulse that the ground gave from time 0 on, N s
+  double first_failure_load =
+      0;                     ///< live load at the first failure of a rising load, N/m²; 0: none
+  double reactions[3] = {};  ///< impulse that the ground gave from time 0 on, N s
   double momentum_error = 0;
   double penetration_max = 0;
-  EnergyLedger energy;               ///< `numerical` holds what the solver's drift correction did not
-  double damping = 0;                ///< taken by the damping of a ringing frame, J
-  double plastic = 0;                ///< work of plastic hinges, J
-  SolveCounts solves;                ///< of the frame solver
-  double residual = 0;               ///< its largest |K u − f| / |f|
-  double joint_work = 0;             ///< lost in joints (rigid ones: shocks and correction), J
-  double energy_in = 0;              ///< of projectiles, added loads and ground motion, J
+  EnergyLedger energy;    ///< `numerical` holds what the solver's drift correction did not
+  double damping = 0;     ///< taken by the damping of a ringing frame, J
+  double plastic = 0;     ///< work of plastic hinges, J
+  SolveCounts solves;     ///< of the frame solver
+  double residual = 0;    ///< its largest |K u − f| / |f|
+  double joint_work = 0;  ///< lost in joints (rigid ones: shocks and correction), J
+  double energy_in = 0;   ///< of projectiles, added loads and ground motion, J
   std::uint64_t solver_fallbacks = 0;  ///< steps in which a direct solver failed
   std::vector<ProjectileOutcome> projectiles;
   std::uint64_t hash = 0;

@@ -13,8 +13,8 @@
 
 namespace sunder {
 
-/// One run of a building as rigid bodies. Poses and velocities are in RigidWorld; this class moves
-/// time on, reads the joints' loads and lets joints break.
+/// One run of a building. How parts move and what joints carry is in FrameMotion, projectiles are
+/// in RigidWorld; this class moves time on, reads the joints' loads and lets joints break.
 class CollapseRun {
  public:
   CollapseRun(const CollapseScene& scene, const CollapseParams& params);
@@ -28,9 +28,9 @@ class CollapseRun {
   struct Joint {
     bool intact = true;
     double broken = std::numeric_limits<double>::infinity();
-    bool is_read = false;    ///< since the last sample
-    double utilisation = 0;  ///< at the last reading
-    JointSample peak;        ///< since the last sample
+    bool is_read = false;           ///< since the last sample
+    double utilisation = 0;         ///< at the last reading
+    JointSample peak;               ///< since the last sample
     std::uint32_t yield = kNoPart;  ///< of the result's yielded joints
   };
   struct Shot {
@@ -73,7 +73,6 @@ class CollapseRun {
   void break_overloaded();
   void cascade();
   void keep_most_utilised(std::vector<Failure>& failures) const;
-  void add_unheld(std::vector<Failure>& failures) const;
   void give_way(std::size_t broken_before);
   double borne_share(std::uint32_t part, std::size_t broken_before) const;
   std::uint32_t struck_part(const Contact& contact, BodyId ball) const;
@@ -103,11 +102,11 @@ class CollapseRun {
   std::vector<JointSample> samples_;
   CollapseResult result_;
   double now_ = 0, last_dt_ = 0, next_sample_ = 0;
-  bool breaks_ = false;      ///< settled: joints can break
-  bool disturbed_ = false;   ///< something has happened to the building
-  double added_load_ = 0;    ///< N/m²
-  double baseline_ = 0;      ///< potential energy of the projectiles where they started, J
-  double start_ = 0;         ///< energy of the standing frame at time 0, J
+  bool breaks_ = false;     ///< settled: joints can break
+  bool disturbed_ = false;  ///< something has happened to the building
+  double added_load_ = 0;   ///< N/m²
+  double baseline_ = 0;     ///< potential energy of the projectiles where they started, J
+  double start_ = 0;        ///< energy of the standing frame at time 0, J
   Vec3 impulse_;
   double largest_momentum_ = 0, largest_momentum_error_ = 0;
 };

@@ -64,6 +64,7 @@ class ElasticMotion final : public FrameMotion {
   std::uint32_t part_of(BodyId body, std::uint32_t prism) const override;
   double sag(std::uint32_t member) const override;
   std::vector<SupportReaction> supports() const override { return supports_; }
+  double unsupported() const override;
   double joint_gap(std::uint32_t) const override { return 0; }
   std::uint64_t bodies() const override;
   double kinetic() const override;
@@ -127,6 +128,7 @@ class ElasticMotion final : public FrameMotion {
   FrameLoads touching() const;
   FrameLoads shaking() const;
   FrameSolver& ledger() const { return dynamic_ ? *dynamic_ : *static_; }
+  void make_dynamic();
   void wake();
   void fall_quiet(double dt);
   FrameLoads loads(bool of_pieces) const;
@@ -140,8 +142,7 @@ class ElasticMotion final : public FrameMotion {
   void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
   void add_piece(std::vector<std::uint32_t> parts, BodyParams body);
   void detach(std::vector<std::uint32_t> parts);
-  std::vector<std::vector<std::uint32_t>> components(
-      const std::vector<std::uint32_t>& parts) const;
+  std::vector<std::vector<std::uint32_t>> components(const std::vector<std::uint32_t>& parts) const;
   void stop_turning();
   void split(std::uint32_t piece);
   double frame_energy() const;
@@ -155,9 +156,9 @@ class ElasticMotion final : public FrameMotion {
   std::unique_ptr<FrameSolver> dynamic_;  ///< made when the frame rings first
   SupportGraph graph_;
   std::vector<std::uint8_t> intact_;
-  std::vector<std::vector<std::uint32_t>> joints_of_;  ///< by part
-  std::vector<std::uint32_t> piece_of_;                ///< by part
-  std::vector<BodyId> collider_of_;                    ///< by part
+  std::vector<std::vector<std::uint32_t>> joints_of_;      ///< by part
+  std::vector<std::uint32_t> piece_of_;                    ///< by part
+  std::vector<BodyId> collider_of_;                        ///< by part
   std::vector<std::vector<std::uint32_t>> parts_of_body_;  ///< by BodyId: prism → part
   std::vector<Piece> pieces_;
   std::vector<Touch> touches_;                         ///< by part
@@ -167,7 +168,7 @@ class ElasticMotion final : public FrameMotion {
   std::vector<FrameSolver::Hinge> hinges_;             ///< of the standing frame, by joint
   std::vector<FrameSolver::Hinge> yielding_;           ///< since breaks were settled
   std::vector<SupportReaction> supports_;
-  double live_ = 0;        ///< added, N/m²
+  double live_ = 0;  ///< added, N/m²
   double now_ = 0, since_step_ = 0, last_dt_ = 0, quiet_for_ = 0;
   bool rings_ = false, loads_changed_ = false;
   std::uint64_t serial_ = 0, skipped_ = 0;
@@ -241,8 +242,7 @@ FrameLoads ElasticMotion::loads(bool of_pieces) const {
   for (const Piece& piece : pieces_) {
     if (piece.body == kNoBody || piece.parts.size() < 2) continue;
     const Quaternion back = conjugate(world_.pose(piece.body).rotation);
-    result.spins.push_back(
-        {piece.parts[0], rotate(back, world_.angular_velocity(piece.body))});
+    result.spins.push_back({piece.parts[0], rotate(back, world_.angular_velocity(piece.body))});
   }
   return result;
 }
@@ -252,8 +252,7 @@ void ElasticMotion::settle(const Progress&) {
   solve_static();
   for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
     if (frame_.joints[j].b != kNoPart) continue;
-    supports_.push_back(
-        {frame_.joints[j].node, static_->reaction(j), static_->reaction_moment(j)});
+    supports_.push_back({frame_.joints[j].node, static_->reaction(j), static_->reaction_moment(j)});
   }
 }
 
@@ -413,6 +412,22 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
 
 // ---- the standing frame in time -----------------------------------------------------------------
 
+void ElasticMotion::make_dynamic() {
+  dynamic_ = std::make_unique<FrameSolver>(frame_, dynamic_params(scene_));
+  std::vector<std::uint32_t> gone, broken;
+  for (std::uint32_t part = 0; part < piece_of_.size(); ++part)
+    if (piece_of_[part] != kStanding) gone.push_back(part);
+  for (std::uint32_t j = 0; j < intact_.size(); ++j)
+    if (intact_[j] == 0) broken.push_back(j);
+  if (!broken.empty()) dynamic_->break_joints(broken);
+  if (!gone.empty()) dynamic_->remove_parts(gone);
+  dynamic_->set_hinges(static_->hinges());
+  v_.assign(dynamic_->freedoms(), 0);
+  f_.resize(v_.size());
+  scratch_.resize(v_.size());
+  product_.resize(v_.size());
+}
+
 /// Starts from the state at rest.
 void ElasticMotion::wake() {
   quiet_for_ = 0;
@@ -421,21 +436,7 @@ void ElasticMotion::wake() {
     return;
   }
   rings_ = true;
-  if (!dynamic_) {
-    dynamic_ = std::make_unique<FrameSolver>(frame_, dynamic_params(scene_));
-    std::vector<std::uint32_t> gone, broken;
-    for (std::uint32_t part = 0; part < piece_of_.size(); ++part)
-      if (piece_of_[part] != kStanding) gone.push_back(part);
-    for (std::uint32_t j = 0; j < intact_.size(); ++j)
-      if (intact_[j] == 0) broken.push_back(j);
-    if (!broken.empty()) dynamic_->break_joints(broken);
-    if (!gone.empty()) dynamic_->remove_parts(gone);
-    dynamic_->set_hinges(static_->hinges());
-    v_.assign(dynamic_->freedoms(), 0);
-    f_.resize(v_.size());
-    scratch_.resize(v_.size());
-    product_.resize(v_.size());
-  }
+  if (!dynamic_) make_dynamic();
   const std::span<const double> rest = static_->displacements();
   u_.assign(rest.begin(), rest.end());
   std::ranges::fill(v_, 0);
@@ -480,9 +481,8 @@ void ElasticMotion::move_on(const FrameLoads& now) {
   const bool touched = !pushed_.contacts.empty() || !pushes.contacts.empty();
   const bool shaken = !scene_.scenario.ground_motion.times.empty();
   const auto work = [&] {
-    return std::pair{
-        touched ? dynamic_->work_of(pushed_) + dynamic_->work_of(pushes) : 0,
-        shaken ? dynamic_->work_of(shaken_) + dynamic_->work_of(shakes) : 0};
+    return std::pair{touched ? dynamic_->work_of(pushed_) + dynamic_->work_of(pushes) : 0,
+                     shaken ? dynamic_->work_of(shaken_) + dynamic_->work_of(shakes) : 0};
   };
   const auto [contact_before, ground_before] = work();
   dynamic_->set_displacements(u_, now);
@@ -548,8 +548,9 @@ void ElasticMotion::fall_quiet(double dt) {
   losses_.damping += before - frame_energy();
 }
 
-// ---- plastic hinges ------------------------------------------------------------------------------
-// In time they turn in the dynamic solver; the static one holds them as they are left.
+// ---- plastic hinges
+// ------------------------------------------------------------------------------ In time they turn
+// in the dynamic solver; the static one holds them as they are left.
 
 FrameSolver& ElasticMotion::standing() const {
   return rings_ && dynamic_ ? *dynamic_ : *static_;
@@ -675,12 +676,13 @@ void ElasticMotion::follow_hinges() {
   if (!stiff.empty()) set_hinges(stiff);
 }
 
-// ---- joints --------------------------------------------------------------------------------------
+// ---- joints
+// --------------------------------------------------------------------------------------
 
 JointLoad ElasticMotion::load(std::uint32_t j) const {
   const bool stands = piece_of_[frame_.joints[j].a] == kStanding;
   return stands && rings_ && !scene_.simulation.quasi_static ? dynamic_->joint_load(j)
-                                                        : static_->joint_load(j);
+                                                             : static_->joint_load(j);
 }
 
 bool ElasticMotion::is_live(std::uint32_t j) const {
@@ -772,14 +774,14 @@ std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
   return joints;
 }
 
-// ---- pieces --------------------------------------------------------------------------------------
+// ---- pieces
+// --------------------------------------------------------------------------------------
 
 double ElasticMotion::mass_of(std::uint32_t part) const {
   const std::uint32_t first = frame_.slab_part(0), end = frame_.wall_part(0);
   const bool is_slab = part >= first && part < end;
   const double gravity = scene_.simulation.gravity;
-  const double added =
-      is_slab && live_ > 0 ? live_ * slab_area(frame_, part - first) / gravity : 0;
+  const double added = is_slab && live_ > 0 ? live_ * slab_area(frame_, part - first) / gravity : 0;
   return solids_[part].mass + added;
 }
 
@@ -882,8 +884,8 @@ void ElasticMotion::take_frames_motion(BodyParams& body,
 void ElasticMotion::add_piece(std::vector<std::uint32_t> parts, BodyParams body) {
   std::vector<Prism> prisms;
   for (const std::uint32_t part : parts)
-    prisms.push_back({solids_[part].hull, solids_[part].half_length, solids_[part].centre,
-                      solids_[part].axes});
+    prisms.push_back(
+        {solids_[part].hull, solids_[part].half_length, solids_[part].centre, solids_[part].axes});
   body.order = kMovingOrder + serial_++;
   const auto index = static_cast<std::uint32_t>(pieces_.size());
   Piece piece;
@@ -1066,13 +1068,21 @@ double ElasticMotion::sag(std::uint32_t member) const {
   return -standing().displacement(node).y;
 }
 
+double ElasticMotion::unsupported() const {
+  double mass = 0;
+  for (std::uint32_t w = 0; w < frame_.walls.size(); ++w)
+    if (frame_.walls[w].edges[0] == kNoPart) mass += solids_[frame_.wall_part(w)].mass;
+  return mass * scene_.simulation.gravity;
+}
+
 std::uint64_t ElasticMotion::bodies() const {
   std::uint64_t count = 0;
   for (const Piece& piece : pieces_) count += piece.body != kNoBody;
   return count;
 }
 
-// ---- energy ----------------------------------------------------------------------------------------
+// ---- energy
+// ----------------------------------------------------------------------------------------
 
 double ElasticMotion::kinetic() const {
   if (!rings_ || !dynamic_) return 0;

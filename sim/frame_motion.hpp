@@ -78,6 +78,8 @@ class FrameMotion {
   virtual double sag(std::uint32_t member) const = 0;  ///< of the end of a member, m down
   /// Mean force and torque of the ground at rest, per joint to the ground in order.
   virtual std::vector<SupportReaction> supports() const = 0;
+  /// Weight that stands on the ground without a support, N: panels of the ground floor.
+  virtual double unsupported() const { return 0; }
   virtual double joint_gap(std::uint32_t joint) const = 0;
   virtual std::uint64_t bodies() const = 0;
 

@@ -375,7 +375,7 @@ void FrameSolver::stiffness_times(std::span<const double> u, std::span<double> f
 
 void FrameSolver::mass_times(std::span<const double> a, std::span<double> f) const {
   impl_->sum_members(a, f, [&](std::uint32_t m, const Twelve& motion) {
-    return times(impl_->mass_matrix(m), motion);
+    return times(impl_->params.mass != 0 ? impl_->masses[m] : impl_->mass_matrix(m), motion);
   });
 }
 

@@ -147,6 +147,7 @@ struct FrameSolver::Impl {
   std::vector<BeamElement> elements;                 ///< of the members
   std::vector<std::vector<PointMass>> point_masses;  ///< of walls that hang, per member
   std::vector<BlockChange> in_factor;                ///< per member
+  std::vector<Matrix12> masses;                      ///< per member, if they are in the factor
   std::vector<Bent> bent;                            ///< by when they first had a hinge
   std::vector<std::uint32_t> bent_of;                ///< per member; kNone: it has none
   std::vector<double> axial_in_factor;               ///< N, of the geometric stiffness

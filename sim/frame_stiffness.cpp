@@ -287,8 +287,9 @@ void FrameSolver::Impl::renew_in_factor(std::uint32_t m) {
   }
   const bool massive = params.mass != 0 && member.present();
   if (massive) {
-    const Matrix12 mass = mass_matrix(m);
-    for (std::size_t i = 0; i < 144; ++i) matrix.at[i] += params.mass * mass.at[i];
+    masses.resize(members.size());
+    masses[m] = mass_matrix(m);
+    for (std::size_t i = 0; i < 144; ++i) matrix.at[i] += params.mass * masses[m].at[i];
   }
   const bool takes_part = member.role == Role::elastic || massive;
   set_in_factor(in_factor[m], takes_part ? between(node, matrix) : BlockChange{kNone, kNone, {}});

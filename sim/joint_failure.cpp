@@ -12,7 +12,8 @@ namespace {
 
 /// Of the largest utilisation: what is nearly as far over its strength breaks with it.
 constexpr double kTogether = 0.9;
-/// Rounds of breaking and redistribution in a step; what is over its strength then waits for the next.
+/// Rounds of breaking and redistribution in a step; what is over its strength then waits for the
+/// next.
 constexpr int kMostRounds = 100;
 
 /// Share of its bending moments with which a load lies on the failure surface; 0: it is beyond it
@@ -227,8 +228,8 @@ void CollapseRun::note_hit(const Contact& contact, std::uint32_t shot, double dt
   outcome.contact_force = contact.impulse / std::max(dt, scene_.rules.load_time);
 }
 
-/// Joint by joint; the reason that came first counts. What follows from a loss of bracing follows at
-/// once.
+/// Joint by joint; the reason that came first counts. What follows from a loss of bracing follows
+/// at once.
 void CollapseRun::break_joints(std::vector<Failure> failures) {
   std::ranges::stable_sort(failures, {}, &Failure::joint);
   for (std::size_t i = 0; i < failures.size(); ++i) {

@@ -190,12 +190,11 @@ scenes_are_sound() {
     expect_exit 0 "$sunder" check s.glb s.obj
   done
 }
-buildings_run() {  # each for the first moments: it stands, and its report is whole
-  local count=0
+buildings_run() {  # each for the first moments, by its solver: it stands, and its report is whole
+  local hybrid=0 bullet=0
   for scene in "$source"/data/scenes/*.json; do
     grep -q '"building"' "$scene" || continue
-    count=$((count + 1))
-    expect_exit 0 "$sunder" collapse "$scene" --set simulation.duration=0.2 -o b.glb -o b.svg \
+    expect_exit 0 "$sunder" collapse "$scene" --set simulation.duration=0.4 -o b.glb -o b.svg \
       --report b.json --history b.csv
     for key in '"broken_at_rest": 0,' '"broken_by": {' '"weight": ' '"sag": {' '"hash": "' \
                '"warnings": []'; do
@@ -206,8 +205,17 @@ buildings_run() {  # each for the first moments: it stands, and its report is wh
          match($0, /"numerical": [^,}]*/) {lost = substr($0, RSTART + 13, RLENGTH - 13)}
          END {exit !(weight > 0 && lost != "" && lost * lost < 1e-18 * weight * weight)}' b.json ||
       fail "$scene: energy.numerical is too large: $(grep numerical b.json)"
+    if grep -q '"solver": "bullet"' "$scene"; then
+      bullet=$((bullet + 1))
+      expect_text b.json '"solver": {"name": "bullet"'
+      expect_text b.json '"solves": {"full": 0, "update": 0,'
+    else
+      hybrid=$((hybrid + 1))
+      expect_text b.json '"solver": {"name": "hybrid"'
+      grep -q '"solves": {"full": [1-9]' b.json || fail "$scene: no frame was solved"
+    fi
   done
-  [ "$count" -ge 4 ] || fail "only $count scenes have a building"
+  [ "$hybrid" -ge 4 ] && [ "$bullet" -ge 1 ] || fail "$hybrid and $bullet scenes of buildings"
 }
 planted_faults() {
   expect_exit 0 "$sunder" fracture $wall -o a.obj

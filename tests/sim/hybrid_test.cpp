@@ -371,6 +371,26 @@ TEST(Hybrid, BuildingFallsWhereItsCornerIsShotAway) {
   EXPECT_GT(r.energy.contact + r.energy.friction + r.energy.fracture, 0);
 }
 
+/// What stands is fixed for the world; a light post must not get more than the heavy ball lost.
+TEST(Hybrid, BlowGivesTheFrameNoMoreThanTheBallLost) {
+  for (const bool breaking : {true, false}) {
+    CollapseScene scene = hybrid_scene(2, 2, 2);
+    scene.rules.breaking = breaking;
+    scene.projectiles.resize(1);
+    scene.projectiles[0] = {.name = "ball",
+                            .radius = 0.5,
+                            .mass = 5000,
+                            .position = {-2, 1.8, 0.1},
+                            .velocity = {30, 0, 0}};
+    scene.simulation.duration = 0.15;
+    const CollapseResult r = simulate_collapse(scene);
+    EXPECT_TRUE(r.projectiles[0].hit);
+    EXPECT_LT(r.energy.kinetic + r.energy.strain + r.energy.potential, r.energy_in);
+    EXPECT_GT(r.energy.contact + r.energy.friction + r.energy.fracture + r.damping, 0);
+    EXPECT_LT(std::fabs(r.energy.numerical), 1e-9 * r.energy_in);
+  }
+}
+
 TEST(Hybrid, MechanismIsAnErrorThatNamesItsNode) {
   CollapseScene scene;
   Frame& frame = scene.frame;
