@@ -261,17 +261,12 @@ void CollapseRun::launch_due() {
 void CollapseRun::launch(std::uint32_t index) {
   const Projectile& p = scene_.projectiles[index];
   Shot& shot = shots_[index];
-  BodyParams body;
-  body.mass = p.mass;
-  const double inertia = 0.4 * p.mass * p.radius * p.radius;
-  body.inertia = {inertia, inertia, inertia, 0, 0, 0};
+  BodyParams body = body_of(p, index);
   // It appeared up to two shortest substeps ago.
   const double flown = now_ - p.time;
   const Vec3 gravity{0, -scene_.simulation.gravity, 0};
   body.pose.position = p.position + flown * p.velocity + (flown * flown / 2) * gravity;
   body.velocity = p.velocity + flown * gravity;
-  body.surface = {p.friction, p.restitution};
-  body.order = kBallOrder + index;
   shot.body = world_.add_sphere(body, p.radius);
   shot.track = recorder_.add_track(kNoTrack);
   recorder_.add_pose(shot.track, body.pose);

@@ -46,14 +46,7 @@ void ImpactRun::launch(std::uint32_t index) {
   Shot& shot = shots_[index];
   const Projectile& p = shot.projectile;
   refuse_overlap(shot);
-  BodyParams body;
-  body.mass = p.mass;
-  const double inertia = 0.4 * p.mass * p.radius * p.radius;
-  body.inertia = {inertia, inertia, inertia, 0, 0, 0};
-  body.pose.position = p.position;
-  body.velocity = p.velocity;
-  body.surface = {p.friction, p.restitution};
-  body.order = kShotOrder + index;
+  const BodyParams body = body_of(p, index);
   shot.body = world_.add_sphere(body, p.radius);
   own(shot.body, {Owner::Kind::projectile, index, 0});
   shot.track = recorder_.add_track(kNoTrack);
@@ -196,7 +189,7 @@ void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
 void ImpactRun::raise_collider(std::uint32_t w, std::uint32_t chunk) {
   ChunkState& state = walls_[w].chunks[chunk];
   if (state.collider != kNoBody || state.island != w) return;
-  const std::uint64_t order = kColliderOrder + (std::uint64_t{w} << 32) + chunk;
+  const std::uint64_t order = kStandingOrder + (std::uint64_t{w} << 32) + chunk;
   state.collider =
       world_.add_static(walls_[w].standing, walls_[w].prisms(chunk), walls_[w].surface(), order);
   own(state.collider, {Owner::Kind::collider, w, chunk});

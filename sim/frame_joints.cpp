@@ -62,10 +62,7 @@ JointStrength strength_of(const JointClass& c, const Section* section, const Ste
   result.interaction = interaction;
   result.bearing = c.bearing;
   result.friction = c.friction;
-  if (section && section->shape == "i") {
-    const double web = section->area - 2 * section->width * section->flange;
-    result.web_share = std::clamp(web / section->area, 0.0, 0.5);
-  }
+  if (section) result.web_share = web_share_of(*section);
   return result;
 }
 

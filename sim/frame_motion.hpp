@@ -10,14 +10,10 @@
 #include <vector>
 
 #include "sim/collapse.hpp"
+#include "sim/contact_order.hpp"
 #include "sim/rigid_world.hpp"
 
 namespace sunder {
-
-/// Keys of the contact order: projectiles, then what stands, then bodies, oldest first.
-constexpr std::uint64_t kBallOrder = std::uint64_t{1} << 60;
-constexpr std::uint64_t kStandingOrder = std::uint64_t{2} << 60;
-constexpr std::uint64_t kMovingOrder = std::uint64_t{3} << 60;
 
 /// Energy that a building's motion accounts for itself, J; positive: lost by what moves.
 struct MotionLosses {

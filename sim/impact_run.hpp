@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/blow.hpp"
+#include "sim/contact_order.hpp"
 #include "sim/impact.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -17,11 +18,6 @@ struct SpeedProfile;
 
 /// Distance of a point from a cell, 0 inside, m.
 double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point);
-
-/// Keys of the contact order: projectiles, then colliders, then bodies, oldest first.
-constexpr std::uint64_t kShotOrder = std::uint64_t{1} << 60;
-constexpr std::uint64_t kColliderOrder = std::uint64_t{2} << 60;
-constexpr std::uint64_t kBodyOrder = std::uint64_t{3} << 60;
 
 /// One run of an impact test. The state of the world is in RigidWorld (poses, velocities), what
 /// hangs together in `islands_`; this class moves time on and lets things break.

@@ -145,7 +145,7 @@ void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
   const Vec3 centre = motion.pose * body.centroid;
   body.velocity = motion.velocity + cross(motion.angular_velocity, centre - motion.centre);
   body.angular_velocity = motion.angular_velocity;
-  body.order = kBodyOrder + serial_++;
+  body.order = kMovingOrder + serial_++;
   std::vector<Prism> prisms;
   for (const std::uint32_t chunk : island.chunks) {
     for (Prism& prism : wall.prisms(chunk)) prisms.push_back(std::move(prism));

@@ -183,6 +183,12 @@ Utilisation utilisation(const JointLoad& load, const JointStrength& strength) {
           largest_of(all, demand)};
 }
 
+double web_share_of(const Section& section) {
+  if (section.shape != "i") return 0;
+  const double web = section.area - 2 * section.width * section.flange;
+  return std::clamp(web / section.area, 0.0, 0.5);
+}
+
 JointStrength section_strength(const Section& section, const SteelGrade& steel,
                                Interaction interaction, double factor) {
   if (interaction == Interaction::ec3_i && section.shape != "i") {
@@ -195,8 +201,7 @@ JointStrength section_strength(const Section& section, const SteelGrade& steel,
   strength.force = {section.area * yield, section.avy * shear, section.avz * shear};
   strength.torque = {section.wt * shear, section.wpl_y * yield, section.wpl_z * yield};
   strength.interaction = interaction;
-  const double web = 1 - 2 * section.width * section.flange / section.area;
-  strength.web_share = section.shape == "i" ? std::clamp(web, 0.0, 0.5) : 0;
+  strength.web_share = web_share_of(section);
   return strength;
 }
 

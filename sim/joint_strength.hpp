@@ -57,6 +57,9 @@ struct Utilisation {
 };
 Utilisation utilisation(const JointLoad& load, const JointStrength& strength);
 
+/// Of ec3-i: a = (A − 2 b t_f)/A, at most 0.5; 0 for tubes.
+double web_share_of(const Section& section);
+
 /// The section's plastic resistances (EN 1993-1-1, 6.2.3–6.2.7, γ_M0 = 1) × `factor`: N_pl = A f_y,
 /// V_pl = A_v f_y/√3, M_pl = W_pl f_y, T = W_t f_y/√3. Throws Error{input} for ec3-i with a tube.
 JointStrength section_strength(const Section& section, const SteelGrade& steel,

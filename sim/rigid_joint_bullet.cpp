@@ -16,8 +16,8 @@ Axes turned_by(const Axes& frame, const Axes& axes) {
   return {frame * axes.x, frame * axes.y, frame * axes.z};
 }
 
-/// A body where its impulses act. `lag`: what gravity adds to its path until then, which the
-/// impulses take back: no drift to be corrected.
+/// A body where its impulses act, less what gravity adds to its path until then: the impulses take
+/// that back, it is no drift to be corrected.
 struct Moment {
   explicit Moment(const Body& body)
       : axes(body.slot != 0 && body.awake ? &body.axes_then : &body.axes),
