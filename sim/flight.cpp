@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "meshing/error.hpp"
-#include "sim/impact_run.hpp"
+#include "sim/wall_run.hpp"
 
 namespace sunder {
 namespace {
@@ -42,7 +42,7 @@ double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point) 
   return inside ? 0 : least;
 }
 
-void ImpactRun::launch(std::uint32_t index) {
+void WallRun::launch(std::uint32_t index) {
   Shot& shot = shots_[index];
   const Projectile& p = shot.projectile;
   refuse_overlap(shot);
@@ -55,7 +55,7 @@ void ImpactRun::launch(std::uint32_t index) {
   baseline_ += p.mass * scene_.simulation.gravity * p.position.y;
 }
 
-void ImpactRun::refuse_overlap(const Shot& shot) const {
+void WallRun::refuse_overlap(const Shot& shot) const {
   const Projectile& p = shot.projectile;
   const auto fail = [&](const std::string& where) {
     throw Error(ErrorCode::input, "projectile \"" + p.name + "\" starts " + where +
@@ -68,6 +68,7 @@ void ImpactRun::refuse_overlap(const Shot& shot) const {
     // Debris of an earlier hit may lie anywhere: contacts push out of it.
     if (i >= walls_.size() && now_ > 0) break;
     const WallState& wall = walls_[islands_[i].wall];
+    if (i < walls_.size() && wall.is_waiting) continue;
     const Vec3 local = inverse(pose_of(islands_[i])) * p.position;
     const double beyond = std::max(std::abs(local.z) - wall.half_thickness, 0.0);
     if (beyond >= p.radius) continue;
@@ -91,12 +92,13 @@ double gap_between(const RigidWorld::Bounds& a, Vec3 low, Vec3 high) {
 }  // namespace
 
 /// Whether any chunk of a wall stands.
-bool ImpactRun::stands(std::uint32_t wall) const {
+bool WallRun::stands(std::uint32_t wall) const {
   const Island& island = islands_[wall];
-  return island.body == kNoBody && (!island.graph || island.graph->present_count() > 0);
+  return island.body == kNoBody && !island.chunks.empty() &&
+         (!island.graph || island.graph->present_count() > 0);
 }
 
-ImpactRun::NearWall ImpactRun::nearest_wall(const RigidWorld::Bounds& bounds) const {
+WallRun::NearWall WallRun::nearest_wall(const RigidWorld::Bounds& bounds) const {
   NearWall nearest;
   for (std::uint32_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_[w];
@@ -107,7 +109,7 @@ ImpactRun::NearWall ImpactRun::nearest_wall(const RigidWorld::Bounds& bounds) co
   return nearest;
 }
 
-double ImpactRun::nearest_gap(const Shot& shot) const {
+double WallRun::nearest_gap(const Shot& shot) const {
   const RigidWorld::Bounds bounds = world_.bounds(shot.body);
   double nearest = nearest_wall(bounds).gap;
   const auto consider = [&](BodyId other) {
@@ -123,7 +125,7 @@ double ImpactRun::nearest_gap(const Shot& shot) const {
 // The longest substep in which nothing could pass through something else: a projectile near
 // anything covers a share of its radius at most, debris near a wall of its own size: the solver
 // looks along its path. The ground has no other side.
-double ImpactRun::distance_limit(double dt) const {
+double WallRun::distance_limit(double dt) const {
   const double share =
       kStepShare * std::clamp(std::sqrt(scene_.simulation.max_error / 0.01), 0.1, 1.0);
   double limit = dt;
@@ -146,7 +148,7 @@ double ImpactRun::distance_limit(double dt) const {
   return limit;
 }
 
-void ImpactRun::raise_colliders(double dt) {
+void WallRun::raise_colliders(double dt) {
   const auto near = [&](BodyId body) {
     if (!world_.is_awake(body)) return;
     const RigidWorld::Bounds b = world_.bounds(body);
@@ -158,7 +160,7 @@ void ImpactRun::raise_colliders(double dt) {
     const Vec3 m{margin, margin, margin};
     for (std::uint32_t w = 0; w < walls_.size(); ++w) {
       const WallState& wall = walls_[w];
-      if (islands_[w].body != kNoBody) continue;
+      if (!stands(w)) continue;
       const Vec3 low = b.low - m, high = b.high + m;
       if (low.x > wall.high.x || low.y > wall.high.y || low.z > wall.high.z ||
           high.x < wall.low.x || high.y < wall.low.y || high.z < wall.low.z)
@@ -173,8 +175,8 @@ void ImpactRun::raise_colliders(double dt) {
 }
 
 // Colliders of standing chunks in a world box; of all when nothing is to be skipped.
-void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
-  if (islands_[w].body != kNoBody) return;
+void WallRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
+  if (!stands(w)) return;
   const WallState& wall = walls_[w];
   if (!params_.skip) {
     for (const std::uint32_t chunk : std::vector(islands_[w].chunks)) raise_collider(w, chunk);
@@ -186,17 +188,18 @@ void ImpactRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
     raise_collider(w, wall.chunk_of_cell[cell]);
 }
 
-void ImpactRun::raise_collider(std::uint32_t w, std::uint32_t chunk) {
+void WallRun::raise_collider(std::uint32_t w, std::uint32_t chunk) {
   ChunkState& state = walls_[w].chunks[chunk];
   if (state.collider != kNoBody || state.island != w) return;
-  const std::uint64_t order = kStandingOrder + (std::uint64_t{w} << 32) + chunk;
+  const std::uint64_t order = kStandingOrder + host_.order + (std::uint64_t{w} << 32) + chunk;
   state.collider =
       world_.add_static(walls_[w].standing, walls_[w].prisms(chunk), walls_[w].surface(), order);
   own(state.collider, {Owner::Kind::collider, w, chunk});
   state.has_hull = true;
+  if (host_.on_collider) host_.on_collider(w, state.collider);
 }
 
-std::optional<ImpactRun::Arrival> ImpactRun::next_arrival(double dt) const {
+std::optional<WallRun::Arrival> WallRun::next_arrival(double dt) const {
   std::optional<Arrival> first;
   const auto consider = [&](std::optional<Arrival> arrival) {
     if (arrival && (!first || arrival->time < first->time)) first = arrival;
@@ -204,17 +207,18 @@ std::optional<ImpactRun::Arrival> ImpactRun::next_arrival(double dt) const {
   for (std::uint32_t s = 0; s < shots_.size(); ++s) {
     if (shots_[s].body == kNoBody || !world_.is_awake(shots_[s].body)) continue;
     consider(arrival_at_ground(s, dt));
-    for (std::uint32_t w = 0; w < walls_.size(); ++w) consider(arrival_at_wall(s, w, dt));
+    for (std::uint32_t w = 0; w < walls_.size(); ++w)
+      if (!islands_[w].chunks.empty()) consider(arrival_at_wall(s, w, dt));
   }
   return first;
 }
 
 // Slower contacts are the solver's: it stops them, as resting things need it.
-double ImpactRun::least_arrival_speed() const {
+double WallRun::least_arrival_speed() const {
   return 0.05 + 2 * scene_.simulation.gravity * scene_.simulation.step;
 }
 
-std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_ground(std::uint32_t s, double dt) const {
+std::optional<WallRun::Arrival> WallRun::arrival_at_ground(std::uint32_t s, double dt) const {
   const SimulationParams& simulation = scene_.simulation;
   if (!simulation.ground) return {};
   const Shot& shot = shots_[s];
@@ -229,8 +233,8 @@ std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_ground(std::uint32_t s, 
   return Arrival{time, s, kNoIsland, {centre.x, height, centre.z}, {0, 1, 0}};
 }
 
-std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_wall(std::uint32_t s, std::uint32_t w,
-                                                             double dt) const {
+std::optional<WallRun::Arrival> WallRun::arrival_at_wall(std::uint32_t s, std::uint32_t w,
+                                                         double dt) const {
   const Shot& shot = shots_[s];
   const WallState& wall = walls_[w];
   const Island& island = islands_[w];
@@ -257,7 +261,7 @@ std::optional<ImpactRun::Arrival> ImpactRun::arrival_at_wall(std::uint32_t s, st
                  rotate(pose.rotation, {0, 0, side})};
 }
 
-bool ImpactRun::is_there(const Arrival& arrival) const {
+bool WallRun::is_there(const Arrival& arrival) const {
   if (arrival.island == kNoIsland) return true;
   const WallState& wall = walls_[arrival.island];
   const Vec3 at = inverse(pose_of(islands_[arrival.island])) * arrival.point;
@@ -265,7 +269,7 @@ bool ImpactRun::is_there(const Arrival& arrival) const {
   return cell != kNoCell && wall.chunks[wall.chunk_of_cell[cell]].island == arrival.island;
 }
 
-void ImpactRun::arrive(const Arrival& arrival) {
+void WallRun::arrive(const Arrival& arrival) {
   const Shot& shot = shots_[arrival.shot];
   Vec3 relative = world_.velocity(shot.body);
   if (arrival.island != kNoIsland && islands_[arrival.island].body != kNoBody)
@@ -281,13 +285,13 @@ void ImpactRun::arrive(const Arrival& arrival) {
   strike({shot.body, arrival.island, arrival.point, arrival.normal, speed, false});
 }
 
-Surface ImpactRun::ground_surface() const {
+Surface WallRun::ground_surface() const {
   return WorldParams{}.ground;
 }
 
 // Closed form: normal impulse by restitution, tangential one by Coulomb until it no longer slides.
-void ImpactRun::bounce(const Meeting& m, BodyId other, const Surface& surface, double spent) {
-  const Owner& who = owner(m.striker);
+void WallRun::bounce(const Meeting& m, BodyId other, const Surface& surface, double spent) {
+  const Owner who = owner(m.striker);
   const Projectile& p = shots_[who.index].projectile;
   const double mu = std::sqrt(p.friction * surface.friction);
   const auto relative = [&] {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/impact_run.hpp"
+#include "sim/wall_run.hpp"
 
 namespace sunder {
 // Breaks bonds of an island and makes bodies of what came loose; they go on as it moved.
-ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Crack> cracks,
-                                        std::size_t driven) {
+WallRun::Freed WallRun::break_bonds(std::uint32_t index, std::span<const Crack> cracks,
+                                    std::size_t driven) {
   Freed freed;
   std::vector<std::uint32_t> bonds;
   for (std::size_t i = 0; i < cracks.size(); ++i) {
@@ -36,7 +36,7 @@ ImpactRun::Freed ImpactRun::break_bonds(std::uint32_t index, std::span<const Cra
 }
 
 // A wall with a web may get new cells; they keep the cracks of the old ones.
-void ImpactRun::note_broken(std::uint32_t index, Bond bond) {
+void WallRun::note_broken(std::uint32_t index, Bond bond) {
   const Island& island = islands_[index];
   bond.a = island.chunks[bond.a];
   if (bond.b != kWorld) bond.b = island.chunks[bond.b];
@@ -44,7 +44,7 @@ void ImpactRun::note_broken(std::uint32_t index, Bond bond) {
 }
 
 // An island whose cells were replaced: its chunks and the bonds among them that never broke.
-void ImpactRun::join_again(std::uint32_t index) {
+void WallRun::join_again(std::uint32_t index) {
   const std::uint32_t wall_index = islands_[index].wall;
   const WallState& wall = walls_[wall_index];
   std::vector<std::uint32_t> members;
@@ -63,7 +63,7 @@ void ImpactRun::join_again(std::uint32_t index) {
   islands_[index] = std::move(island);
 }
 
-ImpactRun::Motion ImpactRun::motion_of(const Island& island) const {
+WallRun::Motion WallRun::motion_of(const Island& island) const {
   Motion motion{walls_[island.wall].standing, {}, {}, {}};
   if (island.body == kNoBody) return motion;
   return {world_.pose(island.body), world_.centre(island.body), world_.velocity(island.body),
@@ -71,8 +71,8 @@ ImpactRun::Motion ImpactRun::motion_of(const Island& island) const {
 }
 
 // `locals` count in the island's chunks.
-std::uint32_t ImpactRun::detach(std::uint32_t from, std::span<const std::uint32_t> locals,
-                                const Motion& motion) {
+std::uint32_t WallRun::detach(std::uint32_t from, std::span<const std::uint32_t> locals,
+                              const Motion& motion) {
   const std::uint32_t wall = islands_[from].wall;
   std::vector<std::uint32_t> members;
   for (const std::uint32_t local : locals) members.push_back(islands_[from].chunks[local]);
@@ -84,8 +84,8 @@ std::uint32_t ImpactRun::detach(std::uint32_t from, std::span<const std::uint32_
   return island;
 }
 
-std::vector<Bond> ImpactRun::intact_bonds(const Island& island,
-                                          std::span<const std::uint32_t> locals) const {
+std::vector<Bond> WallRun::intact_bonds(const Island& island,
+                                        std::span<const std::uint32_t> locals) const {
   std::vector<Bond> bonds;
   if (locals.size() < 2) return bonds;
   const auto place = [&](std::uint32_t local) {
@@ -105,7 +105,7 @@ std::vector<Bond> ImpactRun::intact_bonds(const Island& island,
 }
 
 // The part of a moving island that the others left: its largest, so there is one.
-void ImpactRun::keep_rest(std::uint32_t index, const Motion& motion) {
+void WallRun::keep_rest(std::uint32_t index, const Motion& motion) {
   std::vector<std::uint32_t> locals, members;
   for (std::uint32_t local = 0; local < islands_[index].chunks.size(); ++local)
     if (islands_[index].graph->is_present(local)) locals.push_back(local);
@@ -121,15 +121,15 @@ void ImpactRun::keep_rest(std::uint32_t index, const Motion& motion) {
   add_body_of(index, motion);
 }
 
-std::uint32_t ImpactRun::free_island(std::uint32_t wall, std::vector<std::uint32_t> members,
-                                     std::span<const Bond> bonds) {
+std::uint32_t WallRun::free_island(std::uint32_t wall, std::vector<std::uint32_t> members,
+                                   std::span<const Bond> bonds) {
   const auto index = static_cast<std::uint32_t>(islands_.size());
   for (const std::uint32_t chunk : members) walls_[wall].chunks[chunk].island = index;
   islands_.push_back(make_island(walls_[wall], wall, std::move(members), bonds));
   return index;
 }
 
-void ImpactRun::lower_collider(std::uint32_t wall, std::uint32_t chunk) {
+void WallRun::lower_collider(std::uint32_t wall, std::uint32_t chunk) {
   ChunkState& state = walls_[wall].chunks[chunk];
   if (state.collider == kNoBody) return;
   world_.remove(state.collider);
@@ -137,7 +137,7 @@ void ImpactRun::lower_collider(std::uint32_t wall, std::uint32_t chunk) {
   state.collider = kNoBody;
 }
 
-void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
+void WallRun::add_body_of(std::uint32_t index, const Motion& motion) {
   Island& island = islands_[index];
   WallState& wall = walls_[island.wall];
   BodyParams body = wall.body_of(island.chunks);
@@ -145,7 +145,7 @@ void ImpactRun::add_body_of(std::uint32_t index, const Motion& motion) {
   const Vec3 centre = motion.pose * body.centroid;
   body.velocity = motion.velocity + cross(motion.angular_velocity, centre - motion.centre);
   body.angular_velocity = motion.angular_velocity;
-  body.order = kMovingOrder + serial_++;
+  body.order = kMovingOrder + host_.order + serial_++;
   std::vector<Prism> prisms;
   for (const std::uint32_t chunk : island.chunks) {
     for (Prism& prism : wall.prisms(chunk)) prisms.push_back(std::move(prism));

@@ -10,7 +10,7 @@
 #include "meshing/elementary.hpp"
 #include "meshing/random.hpp"
 #include "sim/edge_blow.hpp"
-#include "sim/impact_run.hpp"
+#include "sim/wall_run.hpp"
 
 namespace sunder {
 namespace {
@@ -28,8 +28,8 @@ constexpr double kLongestExit = 0.15;
 
 }  // namespace
 
-Striker ImpactRun::striker_of(const Meeting& m) const {
-  const Owner& who = owner(m.striker);
+Striker WallRun::striker_of(const Meeting& m) const {
+  const Owner who = owner(m.striker);
   const Island& struck = islands_[m.island];
   const WallState& wall = walls_[struck.wall];
   const double yields =
@@ -63,7 +63,7 @@ Striker ImpactRun::striker_of(const Meeting& m) const {
   return striker;
 }
 
-ImpactRun::Answer ImpactRun::answer_to(const Meeting& m) const {
+WallRun::Answer WallRun::answer_to(const Meeting& m) const {
   const Island& island = islands_[m.island];
   const WallState& wall = walls_[island.wall];
   const Pose back = inverse(pose_of(island));
@@ -79,16 +79,16 @@ ImpactRun::Answer ImpactRun::answer_to(const Meeting& m) const {
   return answer;
 }
 
-double ImpactRun::utilisation(const Answer& answer, double distance, const WallState& wall) const {
+double WallRun::utilisation(const Answer& answer, double distance, const WallState& wall) const {
   const double thickness = 2 * wall.half_thickness;
   if (answer.in_plane) return edge_utilisation_at(answer.blow, distance, thickness, wall.material);
   if (answer.blow.is_global) return utilisation_at(answer.blow, distance, thickness, wall.material);
   return 0;
 }
 
-void ImpactRun::note_hit(const Meeting& m, const Answer& answer) {
+void WallRun::note_hit(const Meeting& m, const Answer& answer) {
   result_.max_utilisation = std::max(result_.max_utilisation, answer.blow.utilisation);
-  const Owner& who = owner(m.striker);
+  const Owner who = owner(m.striker);
   if (who.kind != Owner::Kind::projectile || result_.projectiles[who.index].hit) return;
   ProjectileOutcome& outcome = result_.projectiles[who.index];
   outcome.hit = true;
@@ -99,7 +99,7 @@ void ImpactRun::note_hit(const Meeting& m, const Answer& answer) {
   shots_[who.index].side = answer.front;
 }
 
-void ImpactRun::strike(const Meeting& m) {
+void WallRun::strike(const Meeting& m) {
   const Answer answer = answer_to(m);
   const Island& island = islands_[m.island];
   walls_[island.wall].touched = true;
@@ -112,8 +112,8 @@ void ImpactRun::strike(const Meeting& m) {
 }
 
 // The island's chunks that the blow may concern: all of a small one, else those around the contact.
-std::vector<std::uint32_t> ImpactRun::chunks_near(const Island& island, Vec2 centre,
-                                                  double reach) const {
+std::vector<std::uint32_t> WallRun::chunks_near(const Island& island, Vec2 centre,
+                                                double reach) const {
   std::vector<std::uint32_t> locals;
   if (island.chunks.size() <= kSmallIsland) {
     locals.resize(island.chunks.size());
@@ -133,8 +133,8 @@ std::vector<std::uint32_t> ImpactRun::chunks_near(const Island& island, Vec2 cen
 
 // What the striker touches is in its way. The plug of a light one is wider: chunks whose middle
 // lies in it, so that its mass does not depend on their size.
-bool ImpactRun::is_in_footprint(const WallState& wall, const ChunkState& chunk,
-                                const Answer& answer, double footprint) const {
+bool WallRun::is_in_footprint(const WallState& wall, const ChunkState& chunk, const Answer& answer,
+                              double footprint) const {
   if (chunk.cell == kNoCell || !(footprint > 0)) return false;
   const Vec2 middle{chunk.mass.centroid.x, chunk.mass.centroid.y};
   return length(middle - answer.centre) < footprint ||
@@ -144,8 +144,8 @@ bool ImpactRun::is_in_footprint(const WallState& wall, const ChunkState& chunk,
 
 // Bonds that the blow over-stresses, most over-stressed first, as far as the energy lasts. What
 // lies in the footprint is sheared out whatever its bonds' distance.
-std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answer& answer,
-                                                double footprint, double budget) const {
+std::vector<WallRun::Crack> WallRun::cracks(const Island& island, const Answer& answer,
+                                            double footprint, double budget) const {
   const WallState& wall = walls_[island.wall];
   const double reach = std::max(answer.blow.crack_radius, footprint);
   std::vector<Crack> found;
@@ -167,8 +167,8 @@ std::vector<ImpactRun::Crack> ImpactRun::cracks(const Island& island, const Answ
 
 // The most used first, as far as the energy lasts; a bond found from both its chunks counts once,
 // with the larger demand.
-std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island, std::vector<Crack> found,
-                                                    double budget) const {
+std::vector<WallRun::Crack> WallRun::affordable(const Island& island, std::vector<Crack> found,
+                                                double budget) const {
   std::ranges::sort(found, [](const Crack& a, const Crack& b) {
     return a.bond != b.bond ? a.bond < b.bond : a.utilisation > b.utilisation;
   });
@@ -188,8 +188,8 @@ std::vector<ImpactRun::Crack> ImpactRun::affordable(const Island& island, std::v
 
 // A glass-like wall gets its damage where it was hit: corners by the square root of the speed, size
 // by the reach of the bending stress, radial cracks no longer than the energy lasts.
-SpiderwebParams ImpactRun::web_of(const WallState& wall, const Answer& answer, double footprint,
-                                  double speed, double budget, std::uint64_t seed) const {
+SpiderwebParams WallRun::web_of(const WallState& wall, const Answer& answer, double footprint,
+                                double speed, double budget, std::uint64_t seed) const {
   SpiderwebParams params = *wall.web();
   const double thickness = 2 * wall.half_thickness;
   // Rounded up or down by chance, so that the mean over many hits is the law's.
@@ -216,8 +216,8 @@ SpiderwebParams ImpactRun::web_of(const WallState& wall, const Answer& answer, d
   return params;
 }
 
-void ImpactRun::weave_web(std::uint32_t index, const Answer& answer, double footprint, double speed,
-                          double budget) {
+void WallRun::weave_web(std::uint32_t index, const Answer& answer, double footprint, double speed,
+                        double budget) {
   const std::uint32_t wall_index = islands_[index].wall;
   WallState& wall = walls_[wall_index];
   const std::uint64_t seed = random_bits(scene_.seed, wall_index, wall.hits);
@@ -259,7 +259,7 @@ struct SpeedProfile {
 
 // Speed of approach that breaking may use: of a contact that the solver has answered, what is left
 // and what the contact took, as far as that energy was lost and not passed on to something else.
-double ImpactRun::usable_speed(const Meeting& m) const {
+double WallRun::usable_speed(const Meeting& m) const {
   if (!m.solved) return m.speed;
   const double left = -dot(world_.velocity_at(m.striker, m.point), m.normal);
   const double inverse_mass = world_.inverse_mass_at(m.striker, m.point, m.normal);
@@ -269,7 +269,7 @@ double ImpactRun::usable_speed(const Meeting& m) const {
 }
 
 // Energy of cracks that the solver had left to a striker it threw back.
-void ImpactRun::take_from_rebound(const Meeting& m, double energy) {
+void WallRun::take_from_rebound(const Meeting& m, double energy) {
   const double left = -dot(world_.velocity_at(m.striker, m.point), m.normal);
   if (!(energy > 0) || left >= 0) return;
   const double mass = 1 / world_.inverse_mass_at(m.striker, m.point, m.normal);
@@ -279,7 +279,7 @@ void ImpactRun::take_from_rebound(const Meeting& m, double energy) {
   impulse_ = impulse_ + impulse;
 }
 
-void ImpactRun::go_through(Meeting m, const Answer& answer) {
+void WallRun::go_through(Meeting m, const Answer& answer) {
   m.speed = usable_speed(m);
   const std::uint32_t wall_index = islands_[m.island].wall;
   const double mass = 1 / world_.inverse_mass_at(m.striker, m.point, m.normal);
@@ -317,8 +317,8 @@ void ImpactRun::go_through(Meeting m, const Answer& answer) {
 
 // Momentum from the striker to what came loose: everything in its way moves on with it. False when
 // nothing in its way came loose.
-bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& freed, double mass,
-                          double footprint) {
+bool WallRun::hand_over(const Meeting& m, const Answer& answer, const Freed& freed, double mass,
+                        double footprint) {
   const WallState& wall = walls_[islands_[m.island].wall];
   const double density = wall.material.density;
   // What a light striker punches out moves as one plug.
@@ -359,8 +359,8 @@ bool ImpactRun::hand_over(const Meeting& m, const Answer& answer, const Freed& f
   return true;
 }
 
-void ImpactRun::push_island(std::uint32_t index, const SpeedProfile& profile, double speed,
-                            Vec3 along) {
+void WallRun::push_island(std::uint32_t index, const SpeedProfile& profile, double speed,
+                          Vec3 along) {
   const Island& island = islands_[index];
   const WallState& wall = walls_[island.wall];
   const Pose pose = world_.pose(island.body);
@@ -378,7 +378,7 @@ void ImpactRun::push_island(std::uint32_t index, const SpeedProfile& profile, do
 }
 
 // Toughened glass: once it cracks, what toughening stored breaks the rest.
-void ImpactRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) const {
+void WallRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) const {
   const Island& island = islands_[index];
   std::vector<std::uint8_t> listed(island.bonds.size(), 0);
   for (const Crack& crack : broken) listed[crack.bond] = 1;
@@ -387,7 +387,7 @@ void ImpactRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) c
 }
 
 // What the solver's contacts of the last step break: debris against walls, bodies against anything.
-void ImpactRun::meet_contacts() {
+void WallRun::meet_contacts() {
   const std::vector<Contact> contacts(world_.contacts().begin(), world_.contacts().end());
   for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
     Meeting m;
@@ -414,13 +414,13 @@ void ImpactRun::meet_contacts() {
 }
 
 // Most contacts break nothing: a first look at what they ask of the chunks they touch.
-bool ImpactRun::is_gentle(const Meeting& m) const {
+bool WallRun::is_gentle(const Meeting& m) const {
   const Island& island = islands_[m.island];
   const WallState& wall = walls_[island.wall];
   const Striker striker = striker_of(m);
   const double thickness = 2 * wall.half_thickness;
   const Vec3 normal = rotate(conjugate(pose_of(island).rotation), m.normal);
-  const Owner& who = owner(m.striker);
+  const Owner who = owner(m.striker);
   if (who.kind == Owner::Kind::projectile && !result_.projectiles[who.index].hit)
     return false;  // it is to be noted
   if (std::abs(normal.z) >= kFaceContact)
@@ -430,7 +430,7 @@ bool ImpactRun::is_gentle(const Meeting& m) const {
 }
 
 /// `struck` is what may break; the normal points from it to the other.
-void ImpactRun::meet(BodyId struck, BodyId striker, Vec3 normal, Meeting m) {
+void WallRun::meet(BodyId struck, BodyId striker, Vec3 normal, Meeting m) {
   const Owner what = owner(struck);
   if (owner(striker).kind == Owner::Kind::none) return;  // broke a moment ago
   m.striker = striker;
@@ -450,8 +450,8 @@ void ImpactRun::meet(BodyId struck, BodyId striker, Vec3 normal, Meeting m) {
   }
 }
 
-double ImpactRun::restitution_of(BodyId body) const {
-  const Owner& who = owner(body);
+double WallRun::restitution_of(BodyId body) const {
+  const Owner who = owner(body);
   switch (who.kind) {
     case Owner::Kind::projectile: return shots_[who.index].projectile.restitution;
     case Owner::Kind::island: return walls_[islands_[who.index].wall].material.restitution;
@@ -460,7 +460,7 @@ double ImpactRun::restitution_of(BodyId body) const {
   }
 }
 
-void ImpactRun::break_in_contact(const Meeting& m, double loss) {
+void WallRun::break_in_contact(const Meeting& m, double loss) {
   const Answer answer = answer_to(m);
   walls_[islands_[m.island].wall].touched = true;
   note_hit(m, answer);
@@ -479,7 +479,7 @@ void ImpactRun::break_in_contact(const Meeting& m, double loss) {
       {now_, wall, m.point, m.speed, answer.blow.utilisation, freed.bonds, freed.chunks});
 }
 
-void ImpactRun::split_chunk(const Meeting& m, double loss) {
+void WallRun::split_chunk(const Meeting& m, double loss) {
   const std::uint32_t wall_index = islands_[m.island].wall;
   WallState& wall = walls_[wall_index];
   const std::uint32_t chunk = islands_[m.island].chunks.front();

@@ -178,7 +178,8 @@ std::uint32_t CellBins::cell_at(const Pattern& pattern, Vec2 point) const {
 }
 
 WallState::WallState(const ImpactWall& wall)
-    : asset(wall.asset),
+    : is_waiting(false),
+      asset(wall.asset),
       material(wall.material),
       standing{wall.asset.wall.position, wall.asset.wall.rotation},
       half_thickness(wall.asset.wall.thickness / 2),

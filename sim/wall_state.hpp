@@ -44,6 +44,7 @@ RigidWorld::Bounds bounds_of(const Pose& pose, Vec3 low, Vec3 high);
 /// Finds the cells of a pattern near a point: bins over its bounding box.
 class CellBins {
  public:
+  CellBins() = default;  ///< of a wall without cells: finds none
   explicit CellBins(const Pattern& pattern);
   /// Cells whose bounding box meets the given box, ascending.
   std::vector<std::uint32_t> cells_in(Vec2 low, Vec2 high) const;
@@ -61,12 +62,14 @@ class CellBins {
 
 /// One wall of a run.
 struct WallState {
+  WallState() = default;  ///< one that waits
   explicit WallState(const ImpactWall& wall);
 
+  bool is_waiting = true;  ///< nowhere yet: no cells, no chunks
   WallAsset asset;
   Material material;
   Pose standing;  ///< the wall's frame at the start
-  double half_thickness;
+  double half_thickness = 0;
   Vec3 low, high;            ///< bounds of the standing wall, world
   Vec2 size_low, size_high;  ///< the same in its own plane
   CellBins bins;

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sim/blow.hpp"
@@ -19,17 +22,82 @@ struct SpeedProfile;
 /// Distance of a point from a cell, 0 inside, m.
 double distance_to_cell(const Pattern& pattern, std::uint32_t cell, Vec2 point);
 
-/// One run of an impact test. The state of the world is in RigidWorld (poses, velocities), what
-/// hangs together in `islands_`; this class moves time on and lets things break.
-class ImpactRun {
+/// Walls in a world: they stand, projectiles and debris meet them, they break, what comes loose
+/// moves and breaks again. The state of the world is in RigidWorld (poses, velocities), what hangs
+/// together in `islands_`. Time is someone else's: an impact test's, or a building's, whose panels
+/// are walls that wait until something comes near them.
+class WallRun {
  public:
-  ImpactRun(const ImpactScene& scene, const ImpactParams& params);
-  ImpactResult run();
+  /// First contact of a projectile with the ground or a wall's face within a substep.
+  struct Arrival {
+    double time = 0;  ///< from now, s
+    std::uint32_t shot = 0;
+    std::uint32_t island = kNoIsland;  ///< kNoIsland: the ground
+    Vec3 point, normal;                ///< world; normal points to the projectile
+  };
+  /// Rigid motion of a wall's frame.
+  struct Motion {
+    Pose pose;
+    Vec3 centre, velocity, angular_velocity;  ///< velocity of the point `centre`
+  };
+
+  /// Moving or fixed bodies of the world that are nobody's here: what a building is made of.
+  enum class Foreign : std::uint8_t { none, fixed, moving };
+  struct Params {
+    std::uint32_t waiting = 0;  ///< walls besides the scene's, numbered after them
+    std::uint64_t order = 0;    ///< added to the keys of contacts
+    std::function<Foreign(BodyId)> foreign = {};
+    /// Told of every collider that a standing wall gets.
+    std::function<void(std::uint32_t wall, BodyId body)> on_collider = {};
+  };
+  /// All that is given outlives it. The scene's walls stand; those that wait are nowhere until they
+  /// are told to be.
+  WallRun(const ImpactScene& scene, const ImpactParams& impact, RigidWorld& world,
+          Recorder& recorder, ImpactResult& result, Params params);
+
+  void stand(std::uint32_t wall, const ImpactWall& what);
+  /// As one body that moves; `track` is what it moved along before.
+  void set_free(std::uint32_t wall, const ImpactWall& what, const Motion& motion,
+                std::uint32_t track);
+  /// What still stands of it is one body, or more, from now on.
+  void let_go(std::uint32_t wall, const Motion& motion);
+  bool is_waiting(std::uint32_t wall) const { return walls_[wall].is_waiting; }
+  const WallState& wall(std::uint32_t wall) const { return walls_[wall]; }
+  /// What stands of a wall: its chunks and bonds.
+  const Island& standing(std::uint32_t wall) const { return islands_[wall]; }
+  bool stands(std::uint32_t wall) const;
+  /// Breaks bonds of what stands of a wall.
+  void break_standing(std::uint32_t wall, std::span<const std::uint32_t> bonds, double utilisation);
+
+  // Projectiles, by the scene's number.
+  void launch_due(double until);
+  /// One that is in the world already.
+  void follow_shot(std::uint32_t shot, BodyId body, std::uint32_t track);
+  BodyId shot_body(std::uint32_t shot) const { return shots_[shot].body; }
+  std::uint32_t shot_track(std::uint32_t shot) const { return shots_[shot].track; }
+
+  // A substep: prepare, next_arrival, the world's step, after_step, arrive.
+  /// Makes the colliders that it needs; the longest substep in which nothing passes through.
+  double prepare(double dt);
+  std::optional<Arrival> next_arrival(double dt) const;
+  void after_step(double now);
+  void arrive(const Arrival& arrival);
+  /// Contacts of this body in the last step are those of a wall that stands since.
+  void stand_for(BodyId body, std::uint32_t wall) { own(body, {Owner::Kind::collider, wall, 0}); }
+
+  /// Poses of what came loose, then of the projectiles that were launched here, at the end of a
+  /// step.
+  void record_islands();
+  void record_shots();
+  /// Counts what came of the walls; they as they are in the end (those that wait: empty).
+  std::vector<RecordedWall> finish();
+  double baseline() const { return baseline_; }
+  Vec3 impulse() const { return impulse_; }
 
  private:
   /// What a body of the world is.
   struct Owner {
-    enum class Kind : std::uint8_t { none, ground, collider, island, projectile };
+    enum class Kind : std::uint8_t { none, ground, collider, island, projectile, foreign };
     Kind kind = Kind::none;
     std::uint32_t index = 0;  ///< wall (collider), island, projectile
     std::uint32_t chunk = 0;  ///< of a collider
@@ -40,13 +108,6 @@ class ImpactRun {
     std::uint32_t track = kNoTrack;
     std::uint32_t wall = kNoIsland;  ///< that it hit first
     double side = 0;                 ///< of that wall where it came from, ±1
-  };
-  /// First contact of a projectile with the ground or a wall's face within a substep.
-  struct Arrival {
-    double time = 0;  ///< from now, s
-    std::uint32_t shot = 0;
-    std::uint32_t island = kNoIsland;  ///< kNoIsland: the ground
-    Vec3 point, normal;                ///< world; normal points to the projectile
   };
   struct NearWall {
     double gap = std::numeric_limits<double>::infinity(), thickness = 0;
@@ -78,42 +139,31 @@ class ImpactRun {
     std::uint32_t bonds = 0, chunks = 0;
     double driven_area = 0;  ///< of the cracks that the blow drove, m²
   };
-  /// Rigid motion of a wall's frame.
-  struct Motion {
-    Pose pose;
-    Vec3 centre, velocity, angular_velocity;  ///< velocity of the point `centre`
-  };
 
-  // impact.cpp: set-up, time, outcome.
-  void add_walls();
-  std::vector<std::vector<std::uint32_t>> add_wall(std::uint32_t wall);
-  void step_once(double end);
-  double next_substep(double left);
-  void record(double time);
+  // wall_run.cpp: set-up, outcome.
+  std::vector<std::vector<std::uint32_t>> add_wall(std::uint32_t wall, bool is_free);
+  void move_main(std::uint32_t wall, const Motion& motion, std::uint32_t track);
+  void move_loose(std::uint32_t wall, const std::vector<std::vector<std::uint32_t>>& loose,
+                  const Motion& motion, std::uint32_t track);
+  void record_pose(BodyId body, std::uint32_t track, bool force);
   void watch_projectiles();
-  ImpactResult outcome();
-  const Owner& owner(BodyId body) const { return owners_[body]; }
+  void count_freed();
+  Owner owner(BodyId body) const;
   void own(BodyId body, Owner owner);
   Pose pose_of(const Island& island) const;
-  void advance(double dt);
-  void note_energy();
-  double largest_energy_scale() const;
 
   // flight.cpp: projectiles until something is in their way.
   void launch(std::uint32_t shot);
   void refuse_overlap(const Shot& shot) const;
   double distance_limit(double dt) const;
-  bool stands(std::uint32_t wall) const;
   NearWall nearest_wall(const RigidWorld::Bounds& bounds) const;
   double nearest_gap(const Shot& shot) const;
   void raise_colliders(double dt);
   void raise_colliders_near(std::uint32_t wall, Vec3 low, Vec3 high);
   void raise_collider(std::uint32_t wall, std::uint32_t chunk);
-  std::optional<Arrival> next_arrival(double dt) const;
   std::optional<Arrival> arrival_at_ground(std::uint32_t shot, double dt) const;
   std::optional<Arrival> arrival_at_wall(std::uint32_t shot, std::uint32_t wall, double dt) const;
   bool is_there(const Arrival& arrival) const;
-  void arrive(const Arrival& arrival);
   /// A projectile bounces off something solid (kNoBody) or off a body; cracks that the blow made
   /// cost it `spent` J at least.
   void bounce(const Meeting& meeting, BodyId other, const Surface& surface, double spent = 0);
@@ -167,21 +217,21 @@ class ImpactRun {
 
   const ImpactScene& scene_;
   const ImpactParams& params_;
-  RigidWorld world_;
+  const Params host_;
+  RigidWorld& world_;
+  Recorder& recorder_;
+  ImpactResult& result_;
   std::vector<WallState> walls_;
   std::vector<Island> islands_;  ///< the first ones are the walls'
   std::vector<Shot> shots_;
   std::vector<Owner> owners_;        ///< by BodyId
   std::vector<std::uint32_t> live_;  ///< islands with a body
-  Recorder recorder_;
-  ImpactResult result_;
   double now_ = 0;
-  double least_thickness_ = 0;  ///< of all walls, m
-  std::uint64_t serial_ = 0;    ///< of bodies, for their order
-  double baseline_ = 0;         ///< potential energy of all bodies where they started, J
-  Vec3 impulse_;                ///< that ground and anchors gave, N s
-  double unspent_ = 0;          ///< energy that contacts took in the last substep, J, less cracks'
-  double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
+  double least_thickness_;    ///< of all walls, m
+  std::uint64_t serial_ = 0;  ///< of bodies, for their order
+  double baseline_ = 0;       ///< potential energy of all bodies where they started, J
+  Vec3 impulse_;              ///< that walls gave beside the world's contacts, N s
+  double unspent_ = 0;        ///< energy that contacts took in the last substep, J, less cracks'
   std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
 };
 
