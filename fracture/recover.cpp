@@ -379,4 +379,9 @@ bool all_convex(const Pattern& pattern) {
   return true;
 }
 
+WallAsset at_file_precision(const WallAsset& asset, int threads) {
+  const RenderMeshes meshes = render_meshes(asset, threads);
+  return recover_wall(soup_of(asset, meshes), asset.wall, asset.density);
+}
+
 }  // namespace sunder

@@ -27,6 +27,9 @@ namespace sunder {
 /// z = ±t/2, all chunks one t, or an edge belongs to more than two chunks.
 WallAsset recover_wall(const SoupWall& soup, Wall wall, double density);
 
+/// A wall at the precision of a file, as if it had been written and read.
+WallAsset at_file_precision(const WallAsset& asset, int threads = 1);
+
 /// A cell that replaces another: loops of vertex indices, the outer one counter-clockwise first.
 struct NewCell {
   std::vector<std::vector<std::uint32_t>> loops;
@@ -35,9 +38,9 @@ struct NewCell {
 /// (float32 values) becomes vertex pattern.vertices.size() + i; added cells may have one on an edge
 /// that two of them share and exactly on a border edge, never on an edge shared with a cell that
 /// stays. Cells that stay keep their order and come first; `old_cell[c]` of the result is the cell
-/// it was, or 0xFFFFFFFF - i for added[i]. Mass properties and bonds are recomputed where they change; anchors
-/// are as in recover_wall. Throws Error{geometry} when the edges of the added cells and those of
-/// what stays do not pair up.
+/// it was, or 0xFFFFFFFF - i for added[i]. Mass properties and bonds are recomputed where they
+/// change; anchors are as in recover_wall. Throws Error{geometry} when the edges of the added cells
+/// and those of what stays do not pair up.
 struct ReplacedCells {
   WallAsset asset;
   std::vector<std::uint32_t> old_cell;

@@ -154,8 +154,9 @@ void at_building(const Place& building, Step step) {
 }
 
 /// The regular part of the building, and how much it is.
-RegularCount add_regular_part(Frame& frame, const Place& place, const StoreyParams& common) {
-  if (const std::optional<RegularBuilding> regular = read_regular(place, frame, common)) {
+RegularCount add_regular_part(Frame& frame, const Place& place, const StoreyParams& common,
+                              const SceneFolder& folder) {
+  if (const std::optional<RegularBuilding> regular = read_regular(place, frame, common, folder)) {
     at_building(place, [&] { add_regular(frame, *regular); });
   }
   return {frame.nodes.size(), frame.members.size(), frame.slabs.size(), frame.walls.size()};
@@ -163,11 +164,12 @@ RegularCount add_regular_part(Frame& frame, const Place& place, const StoreyPara
 
 }  // namespace
 
-Frame read_building(const Place& place, const std::vector<Material>& materials) {
+Frame read_building(const Place& place, const std::vector<Material>& materials,
+                    const SceneFolder& folder) {
   check_keys(place, building_keys());
   Frame frame = read_frame_tables(place, materials);
-  const StoreyParams common = read_common_storey(place, frame);
-  const RegularCount regular = add_regular_part(frame, place, common);
+  const StoreyParams common = read_common_storey(place, frame, folder);
+  const RegularCount regular = add_regular_part(frame, place, common, folder);
   const std::vector<GivenJoint> connections = add_given_parts(frame, place, common);
   check_classes_used(place, frame, connections);
   at_building(place, [&] { join(frame, connections); });

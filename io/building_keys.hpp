@@ -79,9 +79,13 @@ inline constexpr SceneKey kOverrideKeys[] = {
 };
 
 /// Beside the thickness and material of the panels in every bay.
-inline constexpr SceneKey kPanelPattern{
-    "pattern", "pattern", "none", "",
-    "Checked as a wall's and otherwise unused: a building's panels stay whole so far."};
+inline constexpr SceneKey kPanelKeys[] = {
+    {"pattern", "pattern", "none", "",
+     "How it breaks, as a wall's; without, and without `asset`, it stays whole."},
+    {"asset", "text", "none", "",
+     "A wall that `sunder fracture` wrote, relative to the scene and inside its folder, instead of "
+     "`pattern`: as large as the panel, bottom and left side first."},
+};
 
 inline constexpr SceneKey kJointKeys[] = {
     {"force", "[x, y, z]", "from section and steel", "N",

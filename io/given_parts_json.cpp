@@ -73,6 +73,7 @@ class GivenParts {
   Frame& frame_;
   const Place& building_;
   const StoreyParams& common_;
+  std::uint32_t slab_pattern_ = kNoPart, wall_pattern_ = kNoPart;
   Vec3 position_;
   Numbers nodes_, members_, sections_, steels_, materials_, classes_;
   std::unordered_set<std::string> parts_;
@@ -90,6 +91,8 @@ GivenParts::GivenParts(Frame& frame, const Place& building, const StoreyParams& 
       materials_(numbers_of(frame.materials)),
       classes_(numbers_of(frame.classes)) {
   check_count();
+  slab_pattern_ = add_pattern(frame, common.slab_pattern);
+  wall_pattern_ = add_pattern(frame, common.wall_pattern);
   if (const JsonValue* value = building.value.find("position")) {
     position_ = triple_at(Place(building, "position", *value), kBuildingPlace, "m");
   }
@@ -232,6 +235,7 @@ void GivenParts::add_slab(const Place& place) {
   slab.thickness = given.thickness > 0 ? given.thickness : usual;
   slab.material = number_or(place, "material", materials_, common_.slab_material);
   slab.live_load = given.live_load >= 0 ? given.live_load : common_.live_load;
+  slab.pattern = slab_pattern_;
   frame_.slabs.push_back(std::move(slab));
 }
 
@@ -263,6 +267,7 @@ void GivenParts::add_panel(const Place& place) {
       common_.wall_thickness > 0 ? common_.wall_thickness : PanelParams{}.thickness;
   wall.thickness = given.thickness > 0 ? given.thickness : usual;
   wall.material = number_or(place, "material", materials_, common_.wall_material);
+  wall.pattern = wall_pattern_;
   frame_.walls.push_back(std::move(wall));
 }
 

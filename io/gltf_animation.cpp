@@ -96,7 +96,7 @@ class Planner {
   void plan_part(std::uint32_t p) {
     const RecordedPart& part = recording_.parts[p];
     result_.of_part.push_back(add(part.track, part.standing, false, true));
-    if (part.removed > recording_.times.back()) return;
+    if (part.removed > recording_.times.back() || part.wall != kNoTrack) return;
     const auto step = std::ranges::lower_bound(recording_.times, part.removed);
     const auto first = key_of(static_cast<std::uint32_t>(step - recording_.times.begin()));
     const std::uint32_t keys = first > 0 ? range_of(first - 1, first + 1) : range_of(0, 1);

@@ -59,7 +59,9 @@ class PartPlanner {
  private:
   void plan_part(std::uint32_t p) {
     const RecordedPart& part = recording_.parts[p];
-    if (step_ && !is_there(recording_, part, *step_)) return result_.mesh_of.push_back(kNoMesh);
+    if (part.wall != kNoTrack || (step_ && !is_there(recording_, part, *step_))) {
+      return result_.mesh_of.push_back(kNoMesh);
+    }
     const auto count = static_cast<std::uint32_t>(result_.shapes.size());
     const auto [place, is_new] = shape_ids_.try_emplace(key_of(part), count);
     if (is_new) {

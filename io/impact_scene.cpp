@@ -22,6 +22,8 @@ const ImportedWall& choose_wall(const ImportedAsset& asset, const Wall& wall) {
                                     "\"");
 }
 
+}  // namespace
+
 ImpactWall import_wall(const Scene& scene, Wall wall) {
   const ImportedAsset asset = import_asset(wall.asset);
   if (!asset.has_chunks)
@@ -41,13 +43,6 @@ ImpactWall import_wall(const Scene& scene, Wall wall) {
     throw Error(ErrorCode::input, wall.asset + ": " + error.what());
   }
   return result;
-}
-
-}  // namespace
-
-WallAsset at_file_precision(const WallAsset& asset, int threads) {
-  const RenderMeshes meshes = render_meshes(asset, threads);
-  return recover_wall(soup_of(asset, meshes), asset.wall, asset.density);
 }
 
 ImpactScene impact_scene(const Scene& scene, int threads, const Progress& progress) {

@@ -172,8 +172,8 @@ std::string building_tables() {
       "`beam_x_<x>_<z>_<storey>`, `beam_z_…`, `slab_…`, `wall_x_…`, `wall_z_…`, counted from "
       "0.\n\n" +
       table(rows);
-  text += "### Slab\n\nOf `slab`.\n\n" + table_of<SlabParams>() +
-          "### Wall panel\n\nOf `walls`.\n\n" + table_of<PanelParams>({&kPanelPattern, 1});
+  text += "### Slab\n\nOf `slab`.\n\n" + table_of<SlabParams>(kPanelKeys) +
+          "### Wall panel\n\nOf `walls`.\n\n" + table_of<PanelParams>(kPanelKeys);
   rows.clear();
   append_rows(rows, kOverrideKeys);
   append_rows(rows, field_rows<StoreyParams>());

@@ -21,7 +21,24 @@ const JsonValue* panel_of(const Place& owner, std::string_view key, double& thic
   return nullptr;
 }
 
-void read_slab(StoreyParams& storey, const Place& owner) {
+/// How a panel breaks, if its object says so.
+void read_panel_pattern(std::optional<PanelPattern>& result, const Place& panel,
+                        const SceneFolder& folder) {
+  const JsonValue* pattern = panel.value.find("pattern");
+  const JsonValue* asset = panel.value.find("asset");
+  if (pattern && asset)
+    Place(panel, "pattern", *pattern)
+        .fail("\"pattern\" does not go with \"asset\", whose file has its own; leave one out");
+  if (pattern)
+    result = PanelPattern{
+        .pattern = read_pattern(Place(panel, "pattern", *pattern)), .min_cell = -1, .asset = {}};
+  if (asset) {
+    result = PanelPattern{};
+    result->asset = path_at(Place(panel, "asset", *asset), "asset", folder);
+  }
+}
+
+void read_slab(StoreyParams& storey, const Place& owner, const SceneFolder& folder) {
   const JsonValue* value = panel_of(owner, "slab", storey.slab_thickness);
   if (!value) return;
   SlabParams slab{.material = storey.slab_material};
@@ -29,9 +46,10 @@ void read_slab(StoreyParams& storey, const Place& owner) {
   read_fields(slab, Place(owner, "slab", *value));
   storey.slab_thickness = slab.thickness;
   storey.slab_material = slab.material;
+  read_panel_pattern(storey.slab_pattern, Place(owner, "slab", *value), folder);
 }
 
-void read_walls(StoreyParams& storey, const Place& owner) {
+void read_walls(StoreyParams& storey, const Place& owner, const SceneFolder& folder) {
   const JsonValue* value = panel_of(owner, "walls", storey.wall_thickness);
   if (!value) return;
   PanelParams panel{.material = storey.wall_material};
@@ -39,13 +57,14 @@ void read_walls(StoreyParams& storey, const Place& owner) {
   read_fields(panel, Place(owner, "walls", *value));
   storey.wall_thickness = panel.thickness;
   storey.wall_material = panel.material;
+  read_panel_pattern(storey.wall_pattern, Place(owner, "walls", *value), folder);
 }
 
 /// What building and overrides have in common; see check_storey.
-void read_storey(StoreyParams& storey, const Place& owner) {
+void read_storey(StoreyParams& storey, const Place& owner, const SceneFolder& folder) {
   read_fields(storey, owner);
-  read_slab(storey, owner);
-  read_walls(storey, owner);
+  read_slab(storey, owner, folder);
+  read_walls(storey, owner, folder);
 }
 
 void check_material(const Place& panel, const Frame& tables) {
@@ -69,16 +88,13 @@ void check_storey(const Place& owner, const Frame& tables) {
   }
   if (const JsonValue* slab = owner.value.find("slab"); slab && slab->members()) {
     const Place place(owner, "slab", *slab);
-    check_keys(place, keys_of<SlabParams>());
+    check_keys(place, keys_of<SlabParams>({"pattern", "asset"}));
     check_material(place, tables);
   }
   if (const JsonValue* walls = owner.value.find("walls"); walls && walls->members()) {
     const Place place(owner, "walls", *walls);
-    check_keys(place, keys_of<PanelParams>({kPanelPattern.name}));
+    check_keys(place, keys_of<PanelParams>({"pattern", "asset"}));
     check_material(place, tables);
-    if (const JsonValue* pattern = walls->find("pattern")) {
-      read_pattern(Place(place, "pattern", *pattern));
-    }
   }
 }
 
@@ -146,7 +162,8 @@ void read_range(std::array<std::uint32_t, 2>& range, const Place& owner, std::st
   }
 }
 
-void read_override(RegularBuilding& building, const Place& place, const Frame& tables) {
+void read_override(RegularBuilding& building, const Place& place, const Frame& tables,
+                   const SceneFolder& folder) {
   std::vector<std::string_view> keys = keys_of<StoreyParams>();
   append_keys(keys, kOverrideKeys);
   check_keys(place, keys);
@@ -161,7 +178,7 @@ void read_override(RegularBuilding& building, const Place& place, const Frame& t
   check_storey(place, tables);
   for (std::uint32_t i = first; i <= last; ++i) {
     StoreyParams& storey = building.storeys[i];
-    read_storey(storey, place);
+    read_storey(storey, place, folder);
     if (const JsonValue* height = place.value.find("height")) {
       storey.height = number_at(Place(place, "height", *height), kStoreyHeight, "m");
     }
@@ -210,10 +227,11 @@ bool has_regular(const Place& building) {
 
 }  // namespace
 
-StoreyParams read_common_storey(const Place& building, const Frame& tables) {
+StoreyParams read_common_storey(const Place& building, const Frame& tables,
+                                const SceneFolder& folder) {
   StoreyParams storey;
   check_storey(building, tables);
-  read_storey(storey, building);
+  read_storey(storey, building, folder);
   if (const JsonValue* height = building.value.find("storey_height")) {
     storey.height = number_at(Place(building, "storey_height", *height), kStoreyHeight, "m");
   }
@@ -221,7 +239,7 @@ StoreyParams read_common_storey(const Place& building, const Frame& tables) {
 }
 
 std::optional<RegularBuilding> read_regular(const Place& building, const Frame& tables,
-                                            const StoreyParams& common) {
+                                            const StoreyParams& common, const SceneFolder& folder) {
   if (!has_regular(building)) {
     for (const std::string_view key : {"storey_height", "overrides", "without"}) {
       if (const JsonValue* value = building.value.find(key)) {
@@ -243,7 +261,7 @@ std::optional<RegularBuilding> read_regular(const Place& building, const Frame& 
     const Place list(building, "overrides", *value);
     check_count(list);
     for (std::size_t i = 0; i < value->items()->size(); ++i) {
-      read_override(regular, Place(list, i), tables);
+      read_override(regular, Place(list, i), tables, folder);
     }
   }
   if (const JsonValue* value = building.value.find("position")) {

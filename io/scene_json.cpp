@@ -143,7 +143,7 @@ SimulationParams read_simulation(const Place& place) {
 void read_buildings(Scene& scene, const Place& place, const SceneFolder& folder) {
   if (const JsonValue* building = place.value.find("building")) {
     const Place at(place, "building", *building);
-    scene.building = read_building(at, scene.materials);
+    scene.building = read_building(at, scene.materials, folder);
     read_fields(scene.rules, at);
   }
   const JsonValue* scenario = place.value.find("scenario");

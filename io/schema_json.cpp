@@ -214,13 +214,20 @@ Json panel_schema(Json schema, bool is_override) {
   return or_false(std::move(schema));
 }
 
+void add_panel_keys(Json& schema) {
+  add_keys(schema["properties"], kPanelKeys,
+           std::array<Json, std::size(kPanelKeys)>{reference("pattern"), Json{{"type", "string"}}});
+}
+
 Json slab_schema(bool is_override) {
-  return panel_schema(fields_schema(field_rows<SlabParams>()), is_override);
+  Json schema = fields_schema(field_rows<SlabParams>());
+  add_panel_keys(schema);
+  return panel_schema(std::move(schema), is_override);
 }
 
 Json walls_schema(bool is_override) {
   Json schema = fields_schema(field_rows<PanelParams>());
-  add_key(schema["properties"], kPanelPattern, reference("pattern"));
+  add_panel_keys(schema);
   return panel_schema(std::move(schema), is_override);
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 /// A projectile may start so much of a step late.
 constexpr double kLeastSubstep = 0.02;
+/// A step is divided at most so often for what flies through panels.
+constexpr double kMostSubsteps = 4096;
 /// Reactions that miss the weight by more are told, relative.
 constexpr double kUneven = 0.02;
 /// Speeds beyond this at the end of settling are told, m/s.
@@ -71,6 +73,34 @@ CollapseRun::CollapseRun(const CollapseScene& scene, const CollapseParams& param
   }
   motion_ = scene.simulation.solver == "bullet" ? jointed_motion(scene_, world_, solids_)
                                                 : elastic_motion(scene_, world_, solids_);
+  if (!frame_.patterns.empty()) add_panels();
+}
+
+void CollapseRun::add_panels() {
+  panels_ = std::make_unique<Panels>(
+      scene_, params_.skip,
+      Panels::Host{.world = world_,
+                   .recorder = recorder_,
+                   .motion = *motion_,
+                   .solids = solids_,
+                   .break_off = [this](std::uint32_t part) { break_off(part); },
+                   .track_of =
+                       [this](std::uint32_t part) {
+                         std::uint32_t& track = parts_[part].track;
+                         if (track == kNoTrack) track = recorder_.add_track(kNoTrack);
+                         parts_[part].removed = now_;
+                         return track;
+                       }});
+}
+
+/// A panel falls apart, or out of the frame.
+void CollapseRun::break_off(std::uint32_t part) {
+  std::vector<Failure> all;
+  for (const std::uint32_t j : joints_of_[part])
+    if (joints_[j].intact)
+      all.push_back({j, joints_[j].utilisation, "panel", frame_.part_name(part), {}, true});
+  break_joints(std::move(all));
+  motion_->settle_breaks();
 }
 
 CollapseResult CollapseRun::run() {
@@ -196,10 +226,21 @@ void CollapseRun::hand_over(std::uint32_t member) {
 
 void CollapseRun::step_once(double end) {
   while (now_ < end - 1e-12 * end) {
-    const double dt = next_substep(end - now_);
-    raise_load(dt);
-    advance(dt, now_ + dt >= end - 1e-12 * end);
-    break_overloaded();
+    double dt = next_substep(end - now_);
+    std::optional<WallRun::Arrival> arrival;
+    if (panels_) {
+      dt = std::min(dt, std::max(panels_->prepare(dt), scene_.simulation.step / kMostSubsteps));
+      arrival = panels_->next_arrival(dt);
+      if (arrival) dt = arrival->time;
+    }
+    if (dt > 1e-3 * scene_.simulation.step / kMostSubsteps) {
+      raise_load(dt);
+      advance(dt, now_ + dt >= end - 1e-12 * end);
+      if (panels_) panels_->after_step(now_);
+      break_overloaded();
+      if (panels_) panels_->follow_frame();
+    }
+    if (arrival) panels_->arrive(*arrival);
     launch_due();
   }
   now_ = end;
@@ -270,6 +311,7 @@ void CollapseRun::launch(std::uint32_t index) {
   shot.body = world_.add_sphere(body, p.radius);
   shot.track = recorder_.add_track(kNoTrack);
   recorder_.add_pose(shot.track, body.pose);
+  if (panels_) panels_->follow_shot(index, shot.body, shot.track);
   result_.energy_in += 0.5 * p.mass * dot(p.velocity, p.velocity);
   baseline_ += p.mass * scene_.simulation.gravity * p.position.y;
 }
@@ -305,6 +347,7 @@ void CollapseRun::record(double time) {
   for (Shot& shot : shots_)
     if (shot.body != kNoBody)
       note(world_.is_awake(shot.body), shot.track, [&] { return world_.pose(shot.body); });
+  if (panels_) panels_->record();
   if (time + 1e-9 >= next_sample_) sample(time);
 }
 
@@ -352,6 +395,13 @@ CollapseResult CollapseRun::outcome() {
   r.energy.potential = world_.potential_energy() - baseline_ - motion_->baseline();
   r.energy.contact += losses.contact;
   r.energy.fracture = losses.fracture;
+  if (panels_) {
+    r.energy.potential -= panels_->baseline();
+    r.energy.contact += panels_->energy().contact;
+    r.energy.friction += panels_->energy().friction;
+    r.energy.fracture += panels_->energy().fracture;
+    impulse_ = impulse_ + panels_->impulse();
+  }
   r.joint_work = losses.joint;
   r.damping = losses.damping;
   r.plastic = losses.plastic;
@@ -375,7 +425,28 @@ CollapseResult CollapseRun::outcome() {
         "the solver's forces truer, stronger sections or joints the building");
   r.hash = recorder_.hash();
   r.recording = recording();
+  if (panels_) add_outcome(panels_->finish(r.recording));
   return std::move(r);
+}
+
+/// What became of the panels.
+void CollapseRun::add_outcome(const ImpactResult& panels) {
+  CollapseResult& r = result_;
+  r.chunks = panels.chunks;
+  r.chunks_freed = panels.chunks_freed;
+  r.chunks_split = panels.chunks_split;
+  r.broken_bonds = panels.broken_bonds;
+  r.crack_area = panels.crack_area;
+  r.panels_broken = static_cast<std::uint64_t>(std::ranges::count_if(
+      r.recording.parts, [](const RecordedPart& part) { return part.wall != kNoTrack; }));
+  r.panels_not_meshed = panels_->count() - r.panels_broken;
+  for (std::size_t i = 0; i < panels.projectiles.size(); ++i) {
+    ProjectileOutcome& outcome = r.projectiles[i];
+    const ProjectileOutcome& there = panels.projectiles[i];
+    if (there.hit && !outcome.hit) outcome = there;
+    outcome.perforated |= there.perforated;
+    if (there.perforated) outcome.residual_speed = there.residual_speed;
+  }
 }
 
 Recording CollapseRun::recording() {

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fracture/asset.hpp"
 #include "sim/frame.hpp"
 #include "sim/impact.hpp"
 #include "sim/projectile.hpp"
@@ -49,6 +51,8 @@ struct Scenario {
 struct CollapseScene {
   std::uint64_t seed = 1;
   Frame frame;
+  /// Of the frame's patterns, by number: the wall of those that are a file's.
+  std::vector<std::optional<WallAsset>> assets = {};
   std::vector<Projectile> projectiles;
   Scenario scenario;
   BreakingRules rules;
@@ -122,6 +126,10 @@ struct CollapseResult {
   double residual = 0;    ///< its largest |K u − f| / |f|
   double joint_work = 0;  ///< lost in joints (rigid ones: shocks and correction), J
   double energy_in = 0;   ///< of projectiles, added loads and ground motion, J
+  // Of slabs and walls that broke.
+  std::uint64_t panels_broken = 0, chunks = 0, chunks_freed = 0, chunks_split = 0;
+  std::uint64_t broken_bonds = 0;
+  double crack_area = 0;               ///< m², one side
   std::uint64_t solver_fallbacks = 0;  ///< steps in which a direct solver failed
   std::vector<ProjectileOutcome> projectiles;
   std::uint64_t hash = 0;
@@ -129,6 +137,7 @@ struct CollapseResult {
   std::uint64_t body_steps_asleep = 0;
   std::uint64_t joint_steps_not_read = 0;
   std::uint64_t poses_not_recorded = 0;
+  std::uint64_t panels_not_meshed = 0;  ///< that could break, and never had to
   std::vector<std::string> warnings;
   Recording recording;
 };

@@ -7,6 +7,7 @@
 
 #include "sim/collapse.hpp"
 #include "sim/frame_motion.hpp"
+#include "sim/panels.hpp"
 #include "sim/post_stability.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -60,11 +61,14 @@ class CollapseRun {
   void refuse_overlap(const Projectile& projectile) const;
   void remove_parts();
   void hand_over(std::uint32_t member);
+  void add_panels();
+  void break_off(std::uint32_t part);
   void raise_load(double dt);
   void record(double time);
   void sample(double time);
   void note_sag();
   CollapseResult outcome();
+  void add_outcome(const ImpactResult& panels);
   Recording recording();
   std::vector<std::uint32_t> tops() const;
   std::vector<std::uint8_t> grounded() const;
@@ -92,6 +96,7 @@ class CollapseRun {
   std::vector<PartSolid> solids_;
   RigidWorld world_;
   std::unique_ptr<FrameMotion> motion_;
+  std::unique_ptr<Panels> panels_;  ///< none: nothing in the building breaks but joints
   PostStability posts_;
   std::vector<Part> parts_;
   std::vector<Joint> joints_;

@@ -59,6 +59,11 @@ class ElasticMotion final : public FrameMotion {
   void rejoin(std::span<const std::uint32_t> joints) override;
   void remove_part(std::uint32_t part) override;
   void add_load(double more) override;
+  bool stands(std::uint32_t part) const override { return piece_of_[part] == kStanding; }
+  BodyId give_up_shape(std::uint32_t part) override;
+  void take_shape(std::uint32_t part, BodyId body) override;
+  void set_mass(std::uint32_t part, double mass) override;
+  Leaving release(std::uint32_t part) override;
   Pose pose(std::uint32_t part) const override;
   bool is_moving(std::uint32_t part) const override;
   std::uint32_t part_of(BodyId body, std::uint32_t prism) const override;
@@ -159,6 +164,7 @@ class ElasticMotion final : public FrameMotion {
   std::vector<std::vector<std::uint32_t>> joints_of_;      ///< by part
   std::vector<std::uint32_t> piece_of_;                    ///< by part
   std::vector<BodyId> collider_of_;                        ///< by part
+  std::vector<double> mass_left_;                          ///< by part, kg
   std::vector<std::vector<std::uint32_t>> parts_of_body_;  ///< by BodyId: prism → part
   std::vector<Piece> pieces_;
   std::vector<Touch> touches_;                         ///< by part
@@ -203,6 +209,7 @@ ElasticMotion::ElasticMotion(const CollapseScene& scene, RigidWorld& world,
       collider_of_(scene.frame.part_count(), kNoBody),
       touches_(scene.frame.part_count()) {
   list_joints();
+  for (const PartSolid& solid : solids) mass_left_.push_back(solid.mass);
   for (std::uint32_t part = 0; part < frame_.part_count(); ++part) add_collider(part);
 }
 
@@ -219,8 +226,7 @@ void ElasticMotion::add_collider(std::uint32_t part) {
   const BodyId body = world_.add_static(pose_of(solids_[part]), {&prism, 1},
                                         surface_of(frame_, part), kStandingOrder + part);
   collider_of_[part] = body;
-  parts_of_body_.resize(body + 1);
-  parts_of_body_[body] = {part};
+  take_shape(part, body);
 }
 
 Vec3 ElasticMotion::gravity() const {
@@ -274,7 +280,8 @@ void ElasticMotion::solve_static() {
 
 std::uint32_t ElasticMotion::part_of(BodyId body, std::uint32_t prism) const {
   if (body >= parts_of_body_.size() || parts_of_body_[body].empty()) return kNoPart;
-  return parts_of_body_[body][prism];
+  const std::vector<std::uint32_t>& parts = parts_of_body_[body];
+  return parts.size() == 1 ? parts.front() : parts[prism];
 }
 
 void ElasticMotion::note_contacts() {
@@ -782,7 +789,7 @@ double ElasticMotion::mass_of(std::uint32_t part) const {
   const bool is_slab = part >= first && part < end;
   const double gravity = scene_.simulation.gravity;
   const double added = is_slab && live_ > 0 ? live_ * slab_area(frame_, part - first) / gravity : 0;
-  return solids_[part].mass + added;
+  return mass_left_[part] + added;
 }
 
 /// Mass, centroid and inertia of parts where they stood.
@@ -891,7 +898,7 @@ void ElasticMotion::add_piece(std::vector<std::uint32_t> parts, BodyParams body)
   Piece piece;
   piece.body = world_.add_body(body, prisms);
   for (const std::uint32_t part : parts) piece_of_[part] = index;
-  parts_of_body_.resize(piece.body + 1);
+  if (parts_of_body_.size() <= piece.body) parts_of_body_.resize(piece.body + 1);
   parts_of_body_[piece.body] = parts;
   piece.parts = std::move(parts);
   piece.loaded_anew = true;
@@ -903,12 +910,8 @@ void ElasticMotion::detach(std::vector<std::uint32_t> parts) {
   BodyParams body = body_of(parts);
   take_frames_motion(body, parts);
   baseline_ += body.mass * scene_.simulation.gravity * body.centroid.y;
-  for (const std::uint32_t part : parts) {
-    parts_of_body_[collider_of_[part]].clear();
-    world_.remove(collider_of_[part]);
-    collider_of_[part] = kNoBody;
-    touches_[part] = {};
-  }
+  for (const std::uint32_t part : parts)
+    if (collider_of_[part] != kNoBody) give_up_shape(part);
   if (dynamic_) dynamic_->remove_parts(parts);
   add_piece(std::move(parts), body);
 }
@@ -1020,6 +1023,49 @@ void ElasticMotion::remove_part(std::uint32_t part) {
   static_->remove_parts({&part, 1});
   given_ += world_.kinetic_energy() + frame_energy() - before;
   hinges_ = standing_hinges();
+}
+
+BodyId ElasticMotion::give_up_shape(std::uint32_t part) {
+  const BodyId body = collider_of_[part];
+  parts_of_body_[body].clear();
+  world_.remove(body);
+  collider_of_[part] = kNoBody;
+  touches_[part] = {};
+  return body;
+}
+
+void ElasticMotion::take_shape(std::uint32_t part, BodyId body) {
+  if (parts_of_body_.size() <= body) parts_of_body_.resize(body + 1);
+  parts_of_body_[body] = {part};
+}
+
+/// The frame springs back where it is lighter.
+void ElasticMotion::set_mass(std::uint32_t part, double mass) {
+  wake();
+  const double before = frame_energy();
+  mass_left_[part] = mass;
+  static_->set_plate_mass(part, mass);
+  if (dynamic_) dynamic_->set_plate_mass(part, mass);
+  solve_static();
+  if (rings_ && dynamic_) stand_on();
+  losses_.fracture += before - frame_energy();
+}
+
+FrameMotion::Leaving ElasticMotion::release(std::uint32_t part) {
+  const std::uint32_t index = piece_of_[part];
+  assert(index < pieces_.size() && pieces_[index].parts.size() == 1 && "its joints are broken");
+  const BodyId body = pieces_[index].body;
+  const Leaving leaving{world_.pose(body) * pose_of(solids_[part]), world_.centre(body),
+                        world_.velocity(body), world_.angular_velocity(body)};
+  parts_of_body_[body].clear();
+  world_.remove(body);
+  pieces_[index].body = kNoBody;
+  pieces_[index].parts.clear();
+  piece_of_[part] = kGone;
+  touches_[part] = {};
+  static_->remove_parts({&part, 1});
+  hinges_ = standing_hinges();
+  return leaving;
 }
 
 /// Free pieces grow heavier too.

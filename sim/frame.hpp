@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fracture/wall.hpp"
 #include "meshing/field.hpp"
 #include "sim/joint_strength.hpp"
 #include "sim/material.hpp"
@@ -41,7 +43,8 @@ struct FrameSlab {
   std::array<std::uint32_t, 4> beams{};  ///< beams[i] joins nodes[i] and nodes[(i+1)%4]; members
   double thickness = 0;                  ///< m
   std::uint32_t material = 0;
-  double live_load = 0;  ///< N/m², as mass (by 9.81 m/s²) that moves with the slab
+  double live_load = 0;             ///< N/m², as mass (by 9.81 m/s²) that moves with the slab
+  std::uint32_t pattern = kNoPart;  ///< that it breaks by; kNoPart: it stays whole
 };
 
 /// A wall panel in a bay of the facade, between two posts, a lower and an upper beam.
@@ -52,6 +55,15 @@ struct FrameWall {
   std::array<std::uint32_t, 4> edges{kNoPart, kNoPart, kNoPart, kNoPart};
   double thickness = 0;
   std::uint32_t material = 0;
+  std::uint32_t pattern = kNoPart;  ///< as a slab's
+};
+
+/// How slabs and wall panels break: by a pattern, or into the chunks of a wall that
+/// `sunder fracture` wrote.
+struct PanelPattern {
+  PatternParams pattern;
+  double min_cell = -1;  ///< as Wall's
+  std::string asset;     ///< the file; empty: none
 };
 
 /// How a kind of joint is made. The six thresholds are either given, as the paper does: two vectors
@@ -108,6 +120,7 @@ struct Frame {
   std::vector<SteelGrade> steels;
   std::vector<Material> materials;
   std::vector<JointClass> classes;
+  std::vector<PanelPattern> patterns;
 
   std::uint32_t part_count() const {
     return static_cast<std::uint32_t>(members.size() + slabs.size() + walls.size());
@@ -126,6 +139,9 @@ struct Frame {
 /// what is parallel to z and upright), before `roll`; y = z × x.
 Axes axes_of(const Frame& frame, const FrameMember& member);
 
+/// The number of a pattern among the frame's, which gets it; kNoPart for none.
+std::uint32_t add_pattern(Frame& frame, const std::optional<PanelPattern>& pattern);
+
 /// A joint that is asked for by name of its parts, when the default ones are not wanted.
 struct GivenJoint {
   std::string of, to, at;   ///< part names ("ground" for to), node name
@@ -139,8 +155,8 @@ struct GivenJoint {
 void join(Frame& frame, const std::vector<GivenJoint>& given = {});
 
 /// A member is about to be taken away: what it carried at its nodes is carried by the next in rank
-/// there (a post above, else a beam), so that the others still meet. Returns the joints whose part b
-/// changed; joints of the member itself stay as they are. O(joints at its nodes), after a search.
+/// there (a post above, else a beam), so that the others still meet. Returns the joints whose part
+/// b changed; joints of the member itself stay as they are. O(joints at its nodes), after a search.
 std::vector<std::uint32_t> hand_over_joints(Frame& frame, std::uint32_t member);
 
 /// What is wrong with a frame, as data.
@@ -163,7 +179,8 @@ struct StoreyParams {
   std::string slab_material = "concrete-c30";
   double wall_thickness = 0;  ///< m; 0: none
   std::string wall_material = "brick";
-  double live_load = 0;  ///< N/m²
+  double live_load = 0;                                    ///< N/m²
+  std::optional<PanelPattern> slab_pattern, wall_pattern;  ///< none: they stay whole
   /// Range of bays that this storey has along x and z, [first, end): set-backs.
   std::array<std::uint32_t, 2> bays_x{0, 0xFFFFFFFFu}, bays_z{0, 0xFFFFFFFFu};
 };

@@ -98,6 +98,18 @@ void FrameSolver::Impl::update(std::vector<std::uint32_t> touched,
   refactor();
 }
 
+void FrameSolver::set_plate_mass(std::uint32_t part, double mass) {
+  PlateSupport& plate = impl_->plates[part - impl_->frame.slab_part(0)];
+  impl_->lay_plate(plate, -1);
+  plate.mass = mass;
+  impl_->lay_plate(plate, 1);
+  if (impl_->params.mass == 0) return;
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t i = 0; i < plate.joint_count; ++i)
+    members.push_back(impl_->frame.joints[plate.joints[i]].b);
+  impl_->update(std::move(members), {});
+}
+
 /// Joins solver nodes by elastic members; the ground is one past the last.
 void FrameSolver::Impl::find_pieces() {
   const std::uint32_t ground = links.node_count();

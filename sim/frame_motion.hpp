@@ -66,6 +66,23 @@ class FrameMotion {
   /// More live load on every slab, N/m².
   virtual void add_load(double more) = 0;
 
+  // Slabs and walls that break into chunks of someone else's.
+  /// Whether a part hangs on the ground and is not moved by the world.
+  virtual bool stands(std::uint32_t part) const = 0;
+  /// The collision shape of a part that stands is taken away, with what touched it; the part still
+  /// loads the frame. Returns the body that it was.
+  virtual BodyId give_up_shape(std::uint32_t part) = 0;
+  /// What touches this fixed body touches the part.
+  virtual void take_shape(std::uint32_t part, BodyId body) = 0;
+  /// So much is left of a part that stands, kg.
+  virtual void set_mass(std::uint32_t part, double mass) = 0;
+  /// A part without joints goes, with the motion it has; its energy goes along.
+  struct Leaving {
+    Pose pose;  ///< of its frame
+    Vec3 centre, velocity, angular_velocity;
+  };
+  virtual Leaving release(std::uint32_t part) = 0;
+
   /// Of the part's own frame (see PartSolid) now.
   virtual Pose pose(std::uint32_t part) const = 0;
   virtual bool is_moving(std::uint32_t part) const = 0;

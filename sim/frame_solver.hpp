@@ -67,6 +67,8 @@ class FrameSolver {
   void break_joints(std::span<const std::uint32_t> joints);
   /// Parts leave the model altogether, with all their joints (they fell off, or were removed).
   void remove_parts(std::span<const std::uint32_t> parts);
+  /// So much is left of a slab or wall panel, kg.
+  void set_plate_mass(std::uint32_t part, double mass);
   /// A plastic hinge at the end of a joint's part a. It turns about the section's axes while its
   /// moments are held, else it is rigid with the rotation that is left. Joint axes, y and z only;
   /// signs as JointLoad, so that moment · rotation is work done.

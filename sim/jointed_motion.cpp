@@ -34,6 +34,11 @@ class JointedMotion final : public FrameMotion {
   void rejoin(std::span<const std::uint32_t> joints) override;
   void remove_part(std::uint32_t part) override;
   void add_load(double more) override;
+  bool stands(std::uint32_t) const override { return false; }
+  BodyId give_up_shape(std::uint32_t) override { return kNoBody; }
+  void take_shape(std::uint32_t, BodyId) override {}
+  void set_mass(std::uint32_t, double) override {}
+  Leaving release(std::uint32_t part) override;
   Pose pose(std::uint32_t part) const override { return world_.pose(parts_[part].body); }
   bool is_moving(std::uint32_t part) const override {
     return parts_[part].body != kNoBody && world_.is_awake(parts_[part].body);
@@ -226,6 +231,17 @@ void JointedMotion::remove_part(std::uint32_t i) {
   part_of_body_[part.body] = kNoPart;
   part.body = kNoBody;
   --standing_;
+}
+
+FrameMotion::Leaving JointedMotion::release(std::uint32_t i) {
+  Part& part = parts_[i];
+  const Leaving leaving{pose(i), world_.centre(part.body), world_.velocity(part.body),
+                        world_.angular_velocity(part.body)};
+  world_.remove(part.body);
+  part_of_body_[part.body] = kNoPart;
+  part.body = kNoBody;
+  --standing_;
+  return leaving;
 }
 
 /// Mass that stands on the slabs.

@@ -90,6 +90,7 @@ std::string name_of(const char* prefix, Place p) {
 
 struct StoreyNumbers {
   std::uint32_t post_section = 0, beam_section = 0, steel = 0, slab = 0, wall = 0;
+  std::uint32_t slab_pattern = kNoPart, wall_pattern = kNoPart;
 };
 
 template <class Named>
@@ -138,7 +139,7 @@ class Layout {
   void fill_member(Kind kind, Place p);
   void fill_slab(Place p);
   void fill_wall(Kind kind, Place p);
-  StoreyNumbers numbers_of(const StoreyParams& storey) const;
+  StoreyNumbers numbers_of(const StoreyParams& storey);
 
   const RegularBuilding& building_;
   Frame& frame_;
@@ -211,7 +212,7 @@ void Layout::check_ranges() {
   }
 }
 
-StoreyNumbers Layout::numbers_of(const StoreyParams& s) const {
+StoreyNumbers Layout::numbers_of(const StoreyParams& s) {
   StoreyNumbers result;
   result.post_section = number_of(frame_.sections, s.post_section, "section");
   result.beam_section = number_of(frame_.sections, s.beam_section, "section");
@@ -222,6 +223,8 @@ StoreyNumbers Layout::numbers_of(const StoreyParams& s) const {
   if (s.wall_thickness != 0) {
     result.wall = number_of(frame_.materials, s.wall_material, "material");
   }
+  result.slab_pattern = add_pattern(frame_, s.slab_pattern);
+  result.wall_pattern = add_pattern(frame_, s.wall_pattern);
   return result;
 }
 
@@ -330,7 +333,8 @@ void Layout::fill_slab(Place p) {
                                     number(kBeamX, {p.x, p.z + 1, p.storey}), number(kBeamZ, p)},
                           .thickness = storey.slab_thickness,
                           .material = numbers_[p.storey].slab,
-                          .live_load = storey.live_load});
+                          .live_load = storey.live_load,
+                          .pattern = numbers_[p.storey].slab_pattern});
 }
 
 /// Left and right as seen from outside.
@@ -348,7 +352,8 @@ void Layout::fill_wall(Kind kind, Place p) {
                  node(right.x, right.z, p.storey + 1), node(left.x, left.z, p.storey + 1)},
        .edges = {below, number(kPost, right), number(beam, p), number(kPost, left)},
        .thickness = building_.storeys[p.storey].wall_thickness,
-       .material = numbers_[p.storey].wall});
+       .material = numbers_[p.storey].wall,
+       .pattern = numbers_[p.storey].wall_pattern});
 }
 
 void Layout::fill() {
@@ -367,6 +372,14 @@ void Layout::fill() {
 }
 
 }  // namespace
+
+std::uint32_t add_pattern(Frame& frame, const std::optional<PanelPattern>& pattern) {
+  if (!pattern) return kNoPart;
+  for (std::uint32_t i = 0; i < frame.patterns.size(); ++i)
+    if (!pattern->asset.empty() && frame.patterns[i].asset == pattern->asset) return i;
+  frame.patterns.push_back(*pattern);
+  return static_cast<std::uint32_t>(frame.patterns.size() - 1);
+}
 
 void add_regular(Frame& frame, const RegularBuilding& building) {
   Layout layout(building, frame);

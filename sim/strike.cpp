@@ -388,7 +388,12 @@ void WallRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) con
 
 // What the solver's contacts of the last step break: debris against walls, bodies against anything.
 void WallRun::meet_contacts() {
-  const std::vector<Contact> contacts(world_.contacts().begin(), world_.contacts().end());
+  std::vector<Contact> contacts(world_.contacts().begin(), world_.contacts().end());
+  for (Contact& contact : contacts)
+    for (const auto& [old, now] : renamed_) {
+      if (contact.a == old) contact.a = now;
+      if (contact.b == old) contact.b = now;
+    }
   for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
     Meeting m;
     double impulse = 0;

@@ -130,7 +130,7 @@ void WallRun::set_free(std::uint32_t w, const ImpactWall& what, const Motion& mo
   move_loose(w, loose, motion, track);
 }
 
-void WallRun::let_go(std::uint32_t w, const Motion& motion) {
+void WallRun::let_go(std::uint32_t w, const Motion& motion, std::uint32_t track) {
   const Island island = std::move(islands_[w]);
   islands_[w] = {};
   islands_[w].wall = w;
@@ -152,7 +152,7 @@ void WallRun::let_go(std::uint32_t w, const Motion& motion) {
     std::vector<std::uint32_t> chunks;
     for (const std::uint32_t i : group) chunks.push_back(members[i]);
     const std::uint32_t moved = free_island(w, std::move(chunks), bonds_among(group, bonds));
-    islands_[moved].track = recorder_.add_track(kNoTrack);
+    islands_[moved].track = recorder_.add_track(track);
     add_body_of(moved, motion);
   }
 }
@@ -206,6 +206,7 @@ void WallRun::after_step(double now) {
   const StepWork work = world_.work();
   unspent_ = std::max(work.contact + work.friction, 0.0);
   meet_contacts();
+  renamed_.clear();
   watch_projectiles();
 }
 

@@ -59,8 +59,8 @@ class WallRun {
   /// As one body that moves; `track` is what it moved along before.
   void set_free(std::uint32_t wall, const ImpactWall& what, const Motion& motion,
                 std::uint32_t track);
-  /// What still stands of it is one body, or more, from now on.
-  void let_go(std::uint32_t wall, const Motion& motion);
+  /// What still stands of it is one body, or more, from now on; `track` as above.
+  void let_go(std::uint32_t wall, const Motion& motion, std::uint32_t track);
   bool is_waiting(std::uint32_t wall) const { return walls_[wall].is_waiting; }
   const WallState& wall(std::uint32_t wall) const { return walls_[wall]; }
   /// What stands of a wall: its chunks and bonds.
@@ -84,6 +84,9 @@ class WallRun {
   void arrive(const Arrival& arrival);
   /// Contacts of this body in the last step are those of a wall that stands since.
   void stand_for(BodyId body, std::uint32_t wall) { own(body, {Owner::Kind::collider, wall, 0}); }
+
+  /// Contacts of this body in the last step are those of a free wall's: it has taken its place.
+  void rename(BodyId body, std::uint32_t wall) { renamed_.emplace_back(body, islands_[wall].body); }
 
   /// Poses of what came loose, then of the projectiles that were launched here, at the end of a
   /// step.
@@ -232,6 +235,7 @@ class WallRun {
   double baseline_ = 0;       ///< potential energy of all bodies where they started, J
   Vec3 impulse_;              ///< that walls gave beside the world's contacts, N s
   double unspent_ = 0;        ///< energy that contacts took in the last substep, J, less cracks'
+  std::vector<std::pair<BodyId, BodyId>> renamed_;  ///< since the last step
   std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
 };
 

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/panels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fracture/recover.hpp"
+#include "meshing/error.hpp"
+#include "sim/part_pose.hpp"
+
+namespace sunder {
+namespace {
+
+/// Keys of contacts of walls, above those of the building's parts.
+constexpr std::uint64_t kWallOrder = std::uint64_t{1} << 58;
+/// Slower contacts break nothing, m/s.
+constexpr double kLeastSpeed = 0.5;
+
+}  // namespace
+
+Panels::Panels(const CollapseScene& scene, bool skip, Host host)
+    : scene_(scene),
+      host_(std::move(host)),
+      impact_{scene.seed, {}, scene.projectiles, scene.simulation},
+      params_{skip, {}},
+      panels_(panels_of(scene.frame, host_.solids)),
+      panel_of_part_(scene.frame.part_count(), kNoPart),
+      walls_(impact_, params_, host_.world, host_.recorder, result_, wall_params()) {
+  for (std::uint32_t w = 0; w < panels_.size(); ++w) {
+    panel_of_part_[panels_[w].part] = w;
+    check_size(panels_[w]);
+  }
+}
+
+/// Of a file; null: it is made by its pattern.
+const WallAsset* Panels::given_asset(const Panel& panel) const {
+  if (panel.pattern >= scene_.assets.size() || !scene_.assets[panel.pattern]) return nullptr;
+  return &*scene_.assets[panel.pattern];
+}
+
+/// A wall from a file fits into its place.
+void Panels::check_size(const Panel& panel) const {
+  const WallAsset* given = given_asset(panel);
+  if (!given) return;
+  const PartSolid& solid = host_.solids[panel.part];
+  const Box box = bounding_box(solid.outline.outline);
+  Box cells{{1e300, 1e300}, {-1e300, -1e300}};
+  for (const Vec2 p : given->pattern.vertices) {
+    cells.low = {std::min(cells.low.x, p.x), std::min(cells.low.y, p.y)};
+    cells.high = {std::max(cells.high.x, p.x), std::max(cells.high.y, p.y)};
+  }
+  const Vec2 size = cells.high - cells.low, place = box.high - box.low;
+  const double thickness = 2 * solid.half_length;
+  const auto text = [](Vec2 v, double z) {
+    return std::to_string(v.x) + " × " + std::to_string(v.y) + " × " + std::to_string(z) + " m";
+  };
+  if (length(size - place) <= kJointGap && std::abs(given->wall.thickness - thickness) <= kJointGap)
+    return;
+  throw Error(ErrorCode::input, scene_.frame.patterns[panel.pattern].asset + ": is " +
+                                    text(size, given->wall.thickness) + ", \"" +
+                                    scene_.frame.part_name(panel.part) + "\" is " +
+                                    text(place, thickness) + "; fracture a wall of that size");
+}
+
+WallRun::Params Panels::wall_params() {
+  return {.waiting = static_cast<std::uint32_t>(panels_.size()),
+          .order = kWallOrder,
+          .foreign = [this](BodyId body) { return foreign(body); },
+          .on_collider = [this](std::uint32_t w,
+                                BodyId body) { host_.motion.take_shape(panels_[w].part, body); }};
+}
+
+std::vector<Panels::Panel> Panels::panels_of(const Frame& frame,
+                                             const std::vector<PartSolid>& solids) {
+  std::vector<Panel> panels;
+  const auto add = [&](std::uint32_t part, std::uint32_t pattern) {
+    if (pattern == kNoPart) return;
+    const Box box = bounding_box(solids[part].outline.outline);
+    const Vec3 low{box.low.x, box.low.y, -solids[part].half_length};
+    const Vec3 high{box.high.x, box.high.y, solids[part].half_length};
+    const RigidWorld::Bounds bounds = bounds_of(pose_of(solids[part]), low, high);
+    panels.push_back({part, pattern, false, false, 0, bounds.low, bounds.high});
+  };
+  for (std::uint32_t s = 0; s < frame.slabs.size(); ++s)
+    add(frame.slab_part(s), frame.slabs[s].pattern);
+  for (std::uint32_t w = 0; w < frame.walls.size(); ++w)
+    add(frame.wall_part(w), frame.walls[w].pattern);
+  return panels;
+}
+
+/// A building's own bodies, beside those that stand for walls.
+WallRun::Foreign Panels::foreign(BodyId body) const {
+  const std::uint32_t part = host_.motion.part_of(body, 0);
+  if (part == kNoPart) return WallRun::Foreign::none;
+  return host_.motion.stands(part) ? WallRun::Foreign::fixed : WallRun::Foreign::moving;
+}
+
+/// Of a part's frame: where the wall's frame begins.
+Vec3 Panels::origin_of(const Panel& panel) const {
+  const Box box = bounding_box(host_.solids[panel.part].outline.outline);
+  return {box.low.x, box.low.y, 0};
+}
+
+/// Chunks weigh together what the part does.
+ImpactWall Panels::wall_of(const Panel& panel) const {
+  const Frame& frame = scene_.frame;
+  const PartSolid& solid = host_.solids[panel.part];
+  const bool is_slab = panel.part < frame.wall_part(0);
+  ImpactWall result;
+  result.material =
+      frame.materials[is_slab ? frame.slabs[panel.part - frame.slab_part(0)].material
+                              : frame.walls[panel.part - frame.wall_part(0)].material];
+  const PanelPattern& pattern = frame.patterns[panel.pattern];
+  Wall wall;
+  wall.name = frame.part_name(panel.part);
+  wall.region = solid.outline;
+  wall.thickness = 2 * solid.half_length;
+  wall.material = solid.material;
+  wall.pattern = pattern.pattern;
+  wall.min_cell = pattern.min_cell;
+  wall.anchors = anchors_of(panel);
+  const Pose pose = pose_of(solid);
+  wall.position = pose.position;
+  wall.rotation = pose.rotation;
+  if (const WallAsset* given = given_asset(panel)) {
+    result.asset = *given;
+    result.asset.wall.name = wall.name;
+    result.asset.wall.position = pose * origin_of(panel);
+    result.asset.wall.rotation = pose.rotation;
+  } else {
+    const WallAsset made =
+        fracture_wall(wall, result.material.density, {.seed = scene_.seed, .threads = 1});
+    result.asset = at_file_precision(made);
+  }
+  double volume = 0;
+  for (const MassProperties& chunk : result.asset.chunks) volume += chunk.volume;
+  result.material.density = result.asset.density = solid.mass / volume;
+  return result;
+}
+
+/// Sides with something to hang on; walls of the ground floor stand on it.
+std::vector<std::string> Panels::anchors_of(const Panel& panel) const {
+  const Frame& frame = scene_.frame;
+  if (panel.part < frame.wall_part(0)) return {"bottom", "left", "right", "top"};
+  constexpr const char* kSides[] = {"bottom", "right", "top", "left"};
+  std::vector<std::string> anchors;
+  const FrameWall& wall = frame.walls[panel.part - frame.wall_part(0)];
+  for (std::size_t i = 0; i < 4; ++i)
+    if (i == 0 || wall.edges[i] != kNoPart) anchors.emplace_back(kSides[i]);
+  return anchors;
+}
+
+/// Panels that stand as one piece near a projectile become walls of chunks.
+double Panels::prepare(double dt) {
+  for (std::uint32_t s = 0; s < impact_.projectiles.size(); ++s) {
+    const BodyId body = walls_.shot_body(s);
+    if (body == kNoBody || !host_.world.is_awake(body)) continue;
+    RigidWorld::Bounds bounds = host_.world.bounds(body);
+    const double way = (length(host_.world.velocity(body)) + impact_.simulation.gravity * dt) * dt +
+                       impact_.projectiles[s].radius;
+    bounds.low = bounds.low - Vec3{way, way, way};
+    bounds.high = bounds.high + Vec3{way, way, way};
+    for (std::uint32_t w = 0; w < panels_.size(); ++w)
+      if (walls_.is_waiting(w) && is_near(panels_[w], bounds) &&
+          host_.motion.stands(panels_[w].part))
+        stand_up(w);
+  }
+  if (!params_.skip) {
+    for (std::uint32_t w = 0; w < panels_.size(); ++w)
+      if (walls_.is_waiting(w) && host_.motion.stands(panels_[w].part)) stand_up(w);
+  }
+  return walls_.prepare(dt);
+}
+
+bool Panels::is_near(const Panel& panel, const RigidWorld::Bounds& bounds) const {
+  return bounds.low.x <= panel.high.x && bounds.low.y <= panel.high.y &&
+         bounds.low.z <= panel.high.z && bounds.high.x >= panel.low.x &&
+         bounds.high.y >= panel.low.y && bounds.high.z >= panel.low.z;
+}
+
+void Panels::stand_up(std::uint32_t w) {
+  Panel& panel = panels_[w];
+  panel.stands = true;
+  const BodyId old = host_.motion.give_up_shape(panel.part);
+  walls_.stand(w, wall_of(panel));
+  walls_.stand_for(old, w);
+  panel.present = present(w);
+}
+
+std::uint32_t Panels::present(std::uint32_t w) const {
+  if (!walls_.stands(w)) return 0;
+  const Island& island = walls_.standing(w);
+  return island.graph ? island.graph->present_count() : 1;
+}
+
+/// A panel that has lost its hold: a body of the chunks that are left, as the part moves.
+void Panels::come_loose(std::uint32_t w, BodyId struck) {
+  Panel& panel = panels_[w];
+  host_.break_off(panel.part);
+  const FrameMotion::Leaving leaves = host_.motion.release(panel.part);
+  panel.is_gone = true;
+  const Pose to_wall{origin_of(panel), {}};
+  const WallRun::Motion motion{leaves.pose * to_wall, leaves.centre, leaves.velocity,
+                               leaves.angular_velocity};
+  const std::uint32_t track = host_.track_of(panel.part);
+  if (panel.stands) {
+    walls_.let_go(w, motion, track);
+  } else {
+    walls_.set_free(w, wall_of(panel), motion, track);
+    if (struck != kNoBody) walls_.rename(struck, w);
+  }
+  panel.stands = false;
+}
+
+/// Whether a contact had the energy to crack the panel across its thickness.
+bool Panels::is_hard(const Contact& contact, const Panel& panel) const {
+  if (contact.approach < kLeastSpeed) return false;
+  const PartSolid& solid = host_.solids[panel.part];
+  const Frame& frame = scene_.frame;
+  const bool is_slab = panel.part < frame.wall_part(0);
+  const Material& material =
+      frame.materials[is_slab ? frame.slabs[panel.part - frame.slab_part(0)].material
+                              : frame.walls[panel.part - frame.wall_part(0)].material];
+  const double thickness = 2 * solid.half_length;
+  return 0.5 * contact.impulse * contact.approach >
+         material.fracture_energy * thickness * thickness;
+}
+
+/// A panel in one piece that something hit.
+void Panels::meet(BodyId body, std::uint32_t prism, const Contact& contact) {
+  const std::uint32_t part = host_.motion.part_of(body, prism);
+  if (part == kNoPart || panel_of_part_[part] == kNoPart) return;
+  const std::uint32_t w = panel_of_part_[part];
+  if (!walls_.is_waiting(w) || !is_hard(contact, panels_[w])) return;
+  if (host_.motion.stands(part)) {
+    stand_up(w);
+  } else {
+    come_loose(w, body);
+  }
+}
+
+void Panels::after_step(double now) {
+  const std::vector<Contact> contacts(host_.world.contacts().begin(), host_.world.contacts().end());
+  for (const Contact& contact : contacts) {
+    meet(contact.a, contact.part_a, contact);
+    meet(contact.b, contact.part_b, contact);
+  }
+  walls_.after_step(now);
+}
+
+void Panels::follow_frame() {
+  for (std::uint32_t w = 0; w < panels_.size(); ++w) {
+    Panel& panel = panels_[w];
+    if (!panel.stands) continue;
+    if (!host_.motion.stands(panel.part) || !walls_.stands(w)) {
+      come_loose(w, kNoBody);
+      continue;
+    }
+    if (const std::uint32_t now = present(w); now != panel.present) {
+      panel.present = now;
+      host_.motion.set_mass(panel.part, standing_mass(w));
+    }
+  }
+}
+
+double Panels::standing_mass(std::uint32_t w) const {
+  const Island& island = walls_.standing(w);
+  double mass = 0;
+  for (std::uint32_t local = 0; local < island.chunks.size(); ++local)
+    if (!island.graph || island.graph->is_present(local))
+      mass += walls_.wall(w).chunks[island.chunks[local]].mass.volume;
+  return mass * walls_.wall(w).material.density;
+}
+
+ImpactResult Panels::finish(Recording& recording) {
+  std::vector<RecordedWall> walls = walls_.finish();
+  for (std::uint32_t w = 0; w < panels_.size(); ++w) {
+    const Panel& panel = panels_[w];
+    if (walls_.is_waiting(w)) continue;
+    RecordedPart& part = recording.parts[panel.part];
+    part.wall = static_cast<std::uint32_t>(recording.walls.size());
+    part.name += "_whole";
+    part.removed = 0;
+    recording.walls.push_back(std::move(walls[w]));
+    if (part.track == kNoTrack) continue;
+    // From the part's frame to the wall's.
+    for (Pose& pose : recording.tracks[part.track].poses) pose = pose * Pose{origin_of(panel), {}};
+  }
+  return std::move(result_);
+}
+
+}  // namespace sunder

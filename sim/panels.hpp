@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "sim/collapse.hpp"
+#include "sim/frame_motion.hpp"
+#include "sim/recorder.hpp"
+#include "sim/rigid_world.hpp"
+#include "sim/wall_run.hpp"
+
+namespace sunder {
+
+/// Slabs and walls of a building that can break. Until something happens near one, it is a part of
+/// the frame like others: a load and one collision shape. Then it is a wall of chunks that stands
+/// where the part stood, and still loads the frame with what is left of it; or, where it came loose
+/// before, a body of chunks.
+class Panels {
+ public:
+  struct Host {
+    RigidWorld& world;
+    Recorder& recorder;
+    FrameMotion& motion;
+    const std::vector<PartSolid>& solids;
+    /// Breaks what joints a part still has, so that it is a body of its own.
+    std::function<void(std::uint32_t part)> break_off;
+    /// The track of a part that leaves the frame.
+    std::function<std::uint32_t(std::uint32_t part)> track_of;
+  };
+  /// All that is given outlives it.
+  Panels(const CollapseScene& scene, bool skip, Host host);
+
+  bool none() const { return panels_.empty(); }
+  /// One that is in the world.
+  void follow_shot(std::uint32_t shot, BodyId body, std::uint32_t track) {
+    walls_.follow_shot(shot, body, track);
+  }
+  // A substep: prepare, next_arrival, the world's step, after_step, arrive.
+  /// The longest substep in which nothing passes through a panel.
+  double prepare(double dt);
+  std::optional<WallRun::Arrival> next_arrival(double dt) const { return walls_.next_arrival(dt); }
+  void after_step(double now);
+  void arrive(const WallRun::Arrival& arrival) { walls_.arrive(arrival); }
+  /// After the frame has changed: what hangs on nothing any more goes, what is left loads it.
+  void follow_frame();
+
+  void record() { walls_.record_islands(); }
+  double baseline() const { return walls_.baseline(); }
+  Vec3 impulse() const { return walls_.impulse(); }
+  const EnergyLedger& energy() const { return result_.energy; }
+  std::uint64_t count() const { return panels_.size(); }
+  /// What became of them. Their walls join the recording, whose parts say which of these they are.
+  ImpactResult finish(Recording& recording);
+
+ private:
+  struct Panel {
+    std::uint32_t part = 0;
+    std::uint32_t pattern = 0;
+    bool stands = false;        ///< as a wall of chunks
+    bool is_gone = false;       ///< from the frame
+    std::uint32_t present = 0;  ///< chunks that stood when the frame was last told
+    Vec3 low, high;             ///< bounds of the part where it stood, world
+  };
+  const WallAsset* given_asset(const Panel& panel) const;
+  void check_size(const Panel& panel) const;
+  static std::vector<Panel> panels_of(const Frame& frame, const std::vector<PartSolid>& solids);
+  WallRun::Params wall_params();
+  WallRun::Foreign foreign(BodyId body) const;
+  Vec3 origin_of(const Panel& panel) const;
+  ImpactWall wall_of(const Panel& panel) const;
+  std::vector<std::string> anchors_of(const Panel& panel) const;
+  bool is_near(const Panel& panel, const RigidWorld::Bounds& bounds) const;
+  bool is_hard(const Contact& contact, const Panel& panel) const;
+  void stand_up(std::uint32_t w);
+  void come_loose(std::uint32_t w, BodyId struck);
+  void meet(BodyId body, std::uint32_t prism, const Contact& contact);
+  std::uint32_t present(std::uint32_t w) const;
+  double standing_mass(std::uint32_t w) const;
+
+  const CollapseScene& scene_;
+  const Host host_;
+  const ImpactScene impact_;
+  const ImpactParams params_;
+  ImpactResult result_;
+  std::vector<Panel> panels_;                 ///< by wall
+  std::vector<std::uint32_t> panel_of_part_;  ///< kNoPart: it does not break
+  WallRun walls_;
+};
+
+}  // namespace sunder
