@@ -84,6 +84,7 @@ void CollapseRun::add_panels() {
                    .motion = *motion_,
                    .solids = solids_,
                    .break_off = [this](std::uint32_t part) { break_off(part); },
+                   .is_intact = [this](std::uint32_t j) { return joints_[j].intact; },
                    .track_of =
                        [this](std::uint32_t part) {
                          std::uint32_t& track = parts_[part].track;
@@ -236,7 +237,11 @@ void CollapseRun::step_once(double end) {
     if (dt > 1e-3 * scene_.simulation.step / kMostSubsteps) {
       raise_load(dt);
       advance(dt, now_ + dt >= end - 1e-12 * end);
-      if (panels_) panels_->after_step(now_);
+      if (panels_) {
+        panels_->after_step(now_);
+        panels_->follow_frame();
+        disturbed_ |= panels_->any_awake();
+      }
       break_overloaded();
       if (panels_) panels_->follow_frame();
     }

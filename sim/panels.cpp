@@ -2,6 +2,7 @@
 #include "sim/panels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fracture/recover.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 /// Keys of contacts of walls, above those of the building's parts.
 constexpr std::uint64_t kWallOrder = std::uint64_t{1} << 58;
+/// What the frame carries of a panel of which nothing is left, kg.
+constexpr double kLeastMass = 1e-3;
 /// Slower contacts break nothing, m/s.
 constexpr double kLeastSpeed = 0.5;
 
@@ -79,7 +82,10 @@ std::vector<Panels::Panel> Panels::panels_of(const Frame& frame,
     const Vec3 low{box.low.x, box.low.y, -solids[part].half_length};
     const Vec3 high{box.high.x, box.high.y, solids[part].half_length};
     const RigidWorld::Bounds bounds = bounds_of(pose_of(solids[part]), low, high);
-    panels.push_back({part, pattern, false, false, 0, bounds.low, bounds.high});
+    Panel panel{.part = part, .pattern = pattern, .low = bounds.low, .high = bounds.high};
+    for (std::uint32_t j = 0; j < frame.joints.size(); ++j)
+      if (frame.joints[j].a == part) panel.joints.push_back(j);
+    panels.push_back(std::move(panel));
   };
   for (std::uint32_t s = 0; s < frame.slabs.size(); ++s)
     add(frame.slab_part(s), frame.slabs[s].pattern);
@@ -180,7 +186,7 @@ bool Panels::is_near(const Panel& panel, const RigidWorld::Bounds& bounds) const
 
 void Panels::stand_up(std::uint32_t w) {
   Panel& panel = panels_[w];
-  panel.stands = true;
+  panel.stands = any_awake_ = true;
   const BodyId old = host_.motion.give_up_shape(panel.part);
   walls_.stand(w, wall_of(panel));
   walls_.stand_for(old, w);
@@ -198,7 +204,6 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
   Panel& panel = panels_[w];
   host_.break_off(panel.part);
   const FrameMotion::Leaving leaves = host_.motion.release(panel.part);
-  panel.is_gone = true;
   const Pose to_wall{origin_of(panel), {}};
   const WallRun::Motion motion{leaves.pose * to_wall, leaves.centre, leaves.velocity,
                                leaves.angular_velocity};
@@ -252,15 +257,47 @@ void Panels::follow_frame() {
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
     if (!panel.stands) continue;
-    if (!host_.motion.stands(panel.part) || !walls_.stands(w)) {
-      come_loose(w, kNoBody);
-      continue;
+    if (host_.motion.stands(panel.part)) {
+      cut_anchors(w);
+      if (const std::uint32_t now = present(w); now != panel.present) {
+        panel.present = now;
+        host_.motion.set_mass(panel.part, std::max(standing_mass(w), kLeastMass));
+      }
     }
-    if (const std::uint32_t now = present(w); now != panel.present) {
-      panel.present = now;
-      host_.motion.set_mass(panel.part, standing_mass(w));
-    }
+    if (!host_.motion.stands(panel.part) || panel.present == 0) come_loose(w, kNoBody);
   }
+}
+
+/// Of the panel's bounding box: 0 bottom, 1 right, 2 top, 3 left.
+std::size_t Panels::side_near(const Panel& panel, Vec2 p) const {
+  const Box box = bounding_box(host_.solids[panel.part].outline.outline);
+  const Vec2 size = box.high - box.low;
+  const std::array<double, 4> away{p.y, size.x - p.x, size.y - p.y, p.x};
+  return static_cast<std::size_t>(std::ranges::min_element(away) - away.begin());
+}
+
+/// Where the panel's joint with what carried it is broken, its chunks hang on nothing.
+void Panels::cut_anchors(std::uint32_t w) {
+  Panel& panel = panels_[w];
+  const Pose to_wall = inverse(walls_.wall(w).standing);
+  std::array<bool, 4> lost{};
+  bool any = false;
+  for (const std::uint32_t j : panel.joints) {
+    if (host_.is_intact(j)) continue;
+    const Vec3 at = to_wall * scene_.frame.joints[j].point;
+    any = lost[side_near(panel, {at.x, at.y})] = true;
+  }
+  if (!any) return;
+  std::erase_if(panel.joints, [&](std::uint32_t j) { return !host_.is_intact(j); });
+  const Island& island = walls_.standing(w);
+  std::vector<std::uint32_t> anchors;
+  for (std::uint32_t b = 0; island.graph && b < island.bonds.size(); ++b) {
+    const Bond& bond = island.bonds[b];
+    if (bond.b == kWorld && island.graph->is_intact(b) &&
+        lost[side_near(panel, {bond.centroid.x, bond.centroid.y})])
+      anchors.push_back(b);
+  }
+  if (!anchors.empty()) walls_.break_standing(w, anchors, 1);
 }
 
 double Panels::standing_mass(std::uint32_t w) const {

@@ -27,6 +27,7 @@ class Panels {
     const std::vector<PartSolid>& solids;
     /// Breaks what joints a part still has, so that it is a body of its own.
     std::function<void(std::uint32_t part)> break_off;
+    std::function<bool(std::uint32_t joint)> is_intact;
     /// The track of a part that leaves the frame.
     std::function<std::uint32_t(std::uint32_t part)> track_of;
   };
@@ -48,6 +49,7 @@ class Panels {
   void follow_frame();
 
   void record() { walls_.record_islands(); }
+  bool any_awake() const { return any_awake_; }
   double baseline() const { return walls_.baseline(); }
   Vec3 impulse() const { return walls_.impulse(); }
   const EnergyLedger& energy() const { return result_.energy; }
@@ -59,10 +61,10 @@ class Panels {
   struct Panel {
     std::uint32_t part = 0;
     std::uint32_t pattern = 0;
-    bool stands = false;        ///< as a wall of chunks
-    bool is_gone = false;       ///< from the frame
-    std::uint32_t present = 0;  ///< chunks that stood when the frame was last told
-    Vec3 low, high;             ///< bounds of the part where it stood, world
+    bool stands = false;                     ///< as a wall of chunks
+    std::uint32_t present = 0;               ///< chunks that stood when the frame was last told
+    std::vector<std::uint32_t> joints = {};  ///< that held it when it was looked at last
+    Vec3 low{}, high{};                      ///< bounds of the part where it stood, world
   };
   const WallAsset* given_asset(const Panel& panel) const;
   void check_size(const Panel& panel) const;
@@ -75,6 +77,8 @@ class Panels {
   bool is_near(const Panel& panel, const RigidWorld::Bounds& bounds) const;
   bool is_hard(const Contact& contact, const Panel& panel) const;
   void stand_up(std::uint32_t w);
+  std::size_t side_near(const Panel& panel, Vec2 point) const;
+  void cut_anchors(std::uint32_t w);
   void come_loose(std::uint32_t w, BodyId struck);
   void meet(BodyId body, std::uint32_t prism, const Contact& contact);
   std::uint32_t present(std::uint32_t w) const;
@@ -86,6 +90,7 @@ class Panels {
   const ImpactParams params_;
   ImpactResult result_;
   std::vector<Panel> panels_;                 ///< by wall
+  bool any_awake_ = false;                    ///< something was near a panel
   std::vector<std::uint32_t> panel_of_part_;  ///< kNoPart: it does not break
   WallRun walls_;
 };
