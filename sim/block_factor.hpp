@@ -38,6 +38,11 @@ class BlockFactor {
  public:
   /// Edges may repeat; a != b. O(edges log edges) and METIS.
   BlockFactor(std::uint32_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges);
+  /// Takes the order from a factor of the same graph: the same bits, without METIS and the C
+  /// library's rand(). Reads only what never changes there, so other threads may use `like`. Throws
+  /// Error{input} if the graph is another one.
+  BlockFactor(std::uint32_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges,
+              const BlockFactor& like);
   ~BlockFactor();
   BlockFactor(BlockFactor&&) noexcept;
 

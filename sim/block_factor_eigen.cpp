@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
+#include "meshing/error.hpp"
 #include "sim/block_factor.hpp"
 #include "sim/block_matrix.hpp"
 #include "sim/front_factor.hpp"
@@ -31,12 +33,12 @@ struct BlockFactor::Impl {
   mutable int reuses = kMostReuses;               // of `forwarded`
   bool is_current = false;  // the factor, with the correction, is that of the matrix
 
-  Impl(std::uint32_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
-      : tree(front_tree(nodes, edges)),
+  Impl(FrontTree ordered, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
+      : tree(std::move(ordered)),
         matrix(tree.place_of, edges),
         factor(tree),
         low_rank(tree),
-        work(6 * std::size_t{nodes}),
+        work(6 * tree.node_at.size()),
         last_b(work.size()) {
     counts.flops = factor.flops();
     for (const Front& front : tree.fronts) {
@@ -110,7 +112,20 @@ struct BlockFactor::Impl {
 
 BlockFactor::BlockFactor(std::uint32_t nodes,
                          std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
-    : impl_(std::make_unique<Impl>(nodes, edges)) {}
+    : impl_(std::make_unique<Impl>(front_tree(nodes, edges), edges)) {}
+BlockFactor::BlockFactor(std::uint32_t nodes,
+                         std::span<const std::pair<std::uint32_t, std::uint32_t>> edges,
+                         const BlockFactor& like) {
+  const FrontTree& tree = like.impl_->tree;
+  if (tree.node_at.size() == nodes) {
+    impl_ = std::make_unique<Impl>(tree, edges);
+    if (impl_->matrix.has_places_of(like.impl_->matrix)) return;
+  }
+  throw Error(ErrorCode::input, "block factor: the order of " +
+                                    std::to_string(tree.node_at.size()) +
+                                    " nodes is that of another graph, not of these " +
+                                    std::to_string(nodes) + "; give a factor of the same one");
+}
 BlockFactor::~BlockFactor() = default;
 BlockFactor::BlockFactor(BlockFactor&&) noexcept = default;
 

@@ -18,6 +18,10 @@ class BlockMatrix {
   BlockMatrix(const std::vector<std::uint32_t>& place_of,
               std::span<const std::pair<std::uint32_t, std::uint32_t>> edges);
 
+  /// Whether both have blocks between the same nodes at the same places.
+  bool has_places_of(const BlockMatrix& other) const {
+    return place_of_ == other.place_of_ && start_ == other.start_ && rows_ == other.rows_;
+  }
   void add(const BlockChange& change);
   /// result = A x; six numbers per node, in the order of the nodes.
   void multiply(std::span<const double> x, std::span<double> result) const;

@@ -200,7 +200,7 @@ void FrameSolver::Impl::refactor() {
   while (failed != BlockFactor::kNoNode) {
     const bool again =
         std::ranges::any_of(held, [&](const Restraint& r) { return r.node == failed; });
-    if (!built || again) {
+    if (again || (!built && !params.free)) {
       throw Error(ErrorCode::input,
                   "the frame is a mechanism: it moves without resistance at " + where(failed));
     }

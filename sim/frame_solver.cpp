@@ -48,10 +48,13 @@ void add_product(const BlockChange& block, std::span<const double> u, std::span<
 
 }  // namespace
 
-FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters)
+FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters,
+                        const Impl* like)
     : frame(frame_to_hold), params(parameters), links(frame_to_hold) {
   check();
-  plates = plates_of(frame);
+  plates = plates_of(frame, params.wall_mass);
+  if (params.free)
+    for (PlateSupport& plate : plates) plate.on_ground = false;
   plates_on.resize(frame.members.size());
   for (std::uint32_t p = 0; p < plates.size(); ++p)
     for (std::uint32_t i = 0; i < plates[p].joint_count; ++i)
@@ -71,7 +74,11 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[0], slab.nodes[2], edges);
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[1], slab.nodes[3], edges);
   }
-  if (links.node_count() > 0) factor.emplace(links.node_count(), edges);
+  if (links.node_count() > 0 && like != nullptr && like->factor) {
+    factor.emplace(links.node_count(), edges, *like->factor);
+  } else if (links.node_count() > 0) {
+    factor.emplace(links.node_count(), edges);
+  }
   update(std::move(all_members), std::move(all_plates));
   f.assign(6 * std::size_t{links.node_count()}, 0);
   u = f;
@@ -186,7 +193,10 @@ void FrameSolver::Impl::iterate_second_order() {
 }
 
 FrameSolver::FrameSolver(const Frame& frame, const FrameSolverParams& params)
-    : impl_(std::make_unique<Impl>(frame, params)) {}
+    : impl_(std::make_unique<Impl>(frame, params, nullptr)) {}
+FrameSolver::FrameSolver(const Frame& frame, const FrameSolverParams& params,
+                         const FrameSolver& like)
+    : impl_(std::make_unique<Impl>(frame, params, like.impl_.get())) {}
 FrameSolver::~FrameSolver() = default;
 
 void FrameSolver::break_joints(std::span<const std::uint32_t> joints) {

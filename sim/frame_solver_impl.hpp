@@ -26,7 +26,7 @@ struct MassField {
 };
 
 struct FrameSolver::Impl {
-  Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters);
+  Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters, const Impl* like);
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   /// elastic: an element of the stiffness. hanging: a rigid cantilever at its held end.

@@ -302,6 +302,10 @@ void FrameSolver::Impl::renew_diaphragm(std::uint32_t slab) {
   std::array<std::uint32_t, 4> node{};
   diaphragm.active = true;
   for (std::size_t i = 0; i < 4; ++i) {
+    if (corners.beams[i] == kNoPart) {
+      diaphragm.active = false;
+      break;
+    }
     const FrameMember& beam = frame.members[corners.beams[i]];
     const Member& member = members[corners.beams[i]];
     diaphragm.active &= plates[slab].carries[i] && member.role == Role::elastic &&
