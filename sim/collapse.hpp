@@ -67,6 +67,12 @@ struct SolveCounts {
   std::uint64_t skipped = 0;  ///< steps in which nothing had to be solved
 };
 
+/// When the standing frame had no second-order equilibrium any more.
+struct Buckling {
+  double time = 0;   ///< s
+  std::string what;  ///< names the node, its storey (height) and members
+};
+
 /// Why a joint broke.
 struct JointBreak {
   std::uint32_t joint = 0;
