@@ -58,6 +58,8 @@ class BlockFactor {
   /// x = A⁻¹ b; six numbers per node. Takes half the time where b is that of the last solve but at
   /// few nodes; then the last digits depend on the solves before.
   void solve(std::span<const double> b, std::span<double> x) const;
+  /// x += A⁻¹ rest: refines a solution. No later solve starts from this one.
+  void correct(std::span<const double> rest, std::span<double> x) const;
   /// A x with the matrix as it is now: for residuals.
   void multiply(std::span<const double> x, std::span<double> result) const;
   FactorCounts counts() const;

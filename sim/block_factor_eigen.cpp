@@ -86,6 +86,11 @@ struct BlockFactor::Impl {
     return fronts;
   }
 
+  void take(std::span<const double> b) const {
+    for (std::size_t i = 0; i < tree.node_at.size(); ++i)
+      std::copy_n(&b[6 * tree.node_at[i]], 6, &work[6 * i]);
+  }
+
   /// work = L⁻¹ b: from the last b, where that differs at few nodes only.
   void forward(std::span<const double> b) const {
     if (reuses < kMostReuses) {
@@ -97,8 +102,7 @@ struct BlockFactor::Impl {
         return keep(b);
       }
     }
-    for (std::size_t i = 0; i < tree.node_at.size(); ++i)
-      std::copy_n(&b[6 * tree.node_at[i]], 6, &work[6 * i]);
+    take(b);
     factor.forward(work);
     reuses = 0;
     keep(b);
@@ -160,6 +164,18 @@ void BlockFactor::solve(std::span<const double> b, std::span<double> x) const {
   impl_->low_rank.apply(work);
   impl_->factor.backward(work);
   for (std::size_t i = 0; i < node_at.size(); ++i) std::copy_n(&work[6 * i], 6, &x[6 * node_at[i]]);
+}
+
+void BlockFactor::correct(std::span<const double> rest, std::span<double> x) const {
+  assert(impl_->is_current && "the factor stands for the matrix");
+  std::vector<double>& work = impl_->work;
+  const std::vector<std::uint32_t>& node_at = impl_->tree.node_at;
+  impl_->take(rest);
+  impl_->factor.forward(work);
+  impl_->low_rank.apply(work);
+  impl_->factor.backward(work);
+  for (std::size_t i = 0; i < node_at.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k) x[6 * node_at[i] + k] += work[6 * i + k];
 }
 
 void BlockFactor::multiply(std::span<const double> x, std::span<double> result) const {

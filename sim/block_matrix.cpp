@@ -19,7 +19,10 @@ void add_part(const Matrix12& delta, int row, int column, Matrix6& block) {
 
 BlockMatrix::BlockMatrix(const std::vector<std::uint32_t>& place_of,
                          std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
-    : place_of_(place_of), diagonal_(place_of.size(), Matrix6{}), start_(place_of.size() + 1, 0) {
+    : place_of_(place_of),
+      diagonal_(place_of.size(), Matrix6{}),
+      peak_(place_of.size()),
+      start_(place_of.size() + 1, 0) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> below;  // column, row
   for (const auto& [a, b] : edges) {
     assert(a != b && "an edge joins two nodes");
@@ -37,15 +40,21 @@ BlockMatrix::BlockMatrix(const std::vector<std::uint32_t>& place_of,
 
 void BlockMatrix::add(const BlockChange& change) {
   const std::uint32_t a = place_of_[change.a], b = place_of_[change.b];
-  add_part(change.delta, 0, 0, diagonal_[a]);
+  add_on_diagonal(change.delta, 0, a);
   if (a == b) return;
-  add_part(change.delta, 6, 6, diagonal_[b]);
+  add_on_diagonal(change.delta, 6, b);
   const std::uint32_t column = std::min(a, b), row = std::max(a, b);
   const auto places = rows(column);
   const auto at = std::lower_bound(places.begin(), places.end(), row);
   assert(at != places.end() && *at == row && "a change lies along an edge");
   Matrix6& block = blocks_[start_[column] + static_cast<std::size_t>(at - places.begin())];
   add_part(change.delta, row == a ? 0 : 6, row == a ? 6 : 0, block);
+}
+
+void BlockMatrix::add_on_diagonal(const Matrix12& delta, int first, std::uint32_t place) {
+  Matrix6& block = diagonal_[place];
+  add_part(delta, first, first, block);
+  for (std::size_t i = 0; i < 6; ++i) peak_[place][i] = std::max(peak_[place][i], block[7 * i]);
 }
 
 void BlockMatrix::multiply(std::span<const double> x, std::span<double> result) const {

@@ -27,6 +27,9 @@ class BlockMatrix {
   void multiply(std::span<const double> x, std::span<double> result) const;
 
   const Matrix6& diagonal(std::uint32_t place) const { return diagonal_[place]; }
+  /// The largest that each of a place's six entries on the diagonal has been: what is left of it by
+  /// rounding after all was taken away again is no stiffness.
+  const std::array<double, 6>& peak(std::uint32_t place) const { return peak_[place]; }
   /// Places below the diagonal in the column of `place`, ascending, and their blocks.
   std::span<const std::uint32_t> rows(std::uint32_t place) const {
     return {rows_.data() + start_[place], start_[place + 1] - start_[place]};
@@ -36,8 +39,11 @@ class BlockMatrix {
   }
 
  private:
+  void add_on_diagonal(const Matrix12& delta, int first, std::uint32_t place);
+
   std::vector<std::uint32_t> place_of_;
   std::vector<Matrix6> diagonal_, blocks_;
+  std::vector<std::array<double, 6>> peak_;
   std::vector<std::size_t> start_;
   std::vector<std::uint32_t> rows_;
 };

@@ -159,6 +159,34 @@ double FrameSolver::Impl::axial(std::uint32_t m) const {
   return members[m].present() ? sum : 0;
 }
 
+/// f - K u, and its largest number.
+double FrameSolver::Impl::rest_of(std::span<const double> motion) {
+  rest.resize(f.size());
+  factor->multiply(motion, rest);
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = f[i] - rest[i];
+  return largest(rest);
+}
+
+/// u = K⁻¹ f, refined while that helps: pins and springs that hold mechanisms cost digits.
+void FrameSolver::Impl::solve_refined() {
+  constexpr int kMostRounds = 3;
+  constexpr double kSmall = 1e-12;
+  if (!factor) return;
+  factor->solve(f, u);
+  const double small = kSmall * largest(f);
+  double left = rest_of(u);
+  for (int round = 0; round < kMostRounds && left > small; ++round) {
+    before = u;
+    factor->correct(rest, u);
+    const double now = rest_of(u);
+    if (!(now < left)) {
+      u.swap(before);
+      return;
+    }
+    left = now;
+  }
+}
+
 /// Second order: the geometric stiffness follows the axial forces until they no longer change.
 void FrameSolver::Impl::iterate_second_order() {
   constexpr int kMostRounds = 20;
@@ -185,7 +213,7 @@ void FrameSolver::Impl::iterate_second_order() {
       refactor();
       throw Error(ErrorCode::input, "the frame buckles under its loads, first at " + where(failed));
     }
-    factor->solve(f, u);
+    solve_refined();
     recover();
   }
   throw Error(ErrorCode::input,
@@ -253,7 +281,7 @@ std::vector<Mechanism> FrameSolver::mechanisms() const {
 
 void FrameSolver::solve(const FrameLoads& loads) {
   impl_->collect(loads, impl_->f);
-  if (impl_->factor) impl_->factor->solve(impl_->f, impl_->u);
+  impl_->solve_refined();
   impl_->recover();
   if (impl_->params.p_delta) impl_->iterate_second_order();
 }

@@ -131,6 +131,8 @@ struct FrameSolver::Impl {
   Twelve end_force(std::uint32_t m, const Twelve& motion) const;
   void add_diaphragm_shear(std::uint32_t slab);
   void recover();
+  double rest_of(std::span<const double> motion);
+  void solve_refined();
   void iterate_second_order();
   Vec3 displacement(std::uint32_t frame_node) const;
   double axial(std::uint32_t m) const;
@@ -172,6 +174,7 @@ struct FrameSolver::Impl {
   std::vector<MassField> fields;       ///< per piece; last: what stands on the ground
   std::vector<JointLoad> plate_loads;  ///< per joint: force and torque on the carrier, world
   std::vector<double> f, u;
+  std::vector<double> rest, before;  ///< of the refinement
 };
 
 }  // namespace sunder
