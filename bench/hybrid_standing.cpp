@@ -59,6 +59,7 @@ void Standing::step() {
 }
 
 void Standing::judge() {
+  if (!motion_->any_live()) return;
   for (std::uint32_t j = 0; j < intact_.size(); ++j)
     if (intact_[j] != 0 && motion_->is_live(j))
       largest_ =

@@ -115,6 +115,7 @@ struct CollapseResult {
   double sag_mean = 0, sag_max = 0;  ///< of the highest nodes of posts at time 0, m down
   std::string sag_node;              ///< where it is largest
   double sag_end = 0;                ///< largest of those still standing at the end, m
+  std::vector<Buckling> buckles;     ///< after time 0 with `p_delta`; from then on first order
   double joint_gap = 0;              ///< widest between the two sides of an intact joint, m
   double first_failure_load =
       0;                     ///< live load at the first failure of a rising load, N/m²; 0: none

@@ -34,6 +34,18 @@ void StandingFrame::settle(const Progress&) {
   static_.frame = std::make_unique<FrameSolver>(frame_, static_params(scene_));
   solve_static();
   is_settled_ = true;
+  if (!may_ring()) return;
+  ahead_ = std::async(std::launch::async, [&scene = scene_, &like = *static_.frame] {
+    return std::make_unique<FrameSolver>(scene.frame, dynamic_params(scene), like);
+  });
+}
+
+/// Later than at time 0: when parts are removed joints pass to others, and it is needed at once.
+bool StandingFrame::may_ring() const {
+  const Scenario& scenario = scene_.scenario;
+  if (scene_.simulation.quasi_static || !scenario.remove.empty()) return false;
+  return !scene_.projectiles.empty() || scenario.load_rate > 0 ||
+         !scenario.ground_motion.times.empty();
 }
 
 std::vector<SupportReaction> StandingFrame::supports() const {
@@ -122,6 +134,7 @@ void StandingFrame::go_first_order(const char* why) {
   const std::vector<Hinge> hinges = has_rung_ ? hinges_ : static_.frame->hinges();
   FrameSolverParams params = static_params(scene_);
   params.p_delta = false;
+  if (ahead_.valid()) ahead_.wait();
   static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
   bring_up_to_date(static_);
   static_.frame->set_hinges(hinges);
@@ -136,7 +149,11 @@ void StandingFrame::balance() {
 }
 
 void StandingFrame::make_dynamic() {
-  dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(scene_), *static_.frame)};
+  if (ahead_.valid()) {
+    dynamic_ = {ahead_.get()};
+  } else {
+    dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(scene_), *static_.frame)};
+  }
   bring_up_to_date(dynamic_);
   dynamic_.frame->set_hinges(static_.frame->hinges());
   v_.assign(dynamic_.frame->freedoms(), 0);

@@ -24,6 +24,8 @@ class StandingFrame {
   explicit StandingFrame(const CollapseScene& scene);
 
   /// The elastic state under the weight; nothing moves. Throws Error{input} as FrameSolver does.
+  /// If anything of the scene can disturb it, the factor of what rings is begun in a thread of its
+  /// own, and waited for when it is needed first.
   void settle(const Progress& progress);
   std::vector<SupportReaction> supports() const;
 
@@ -105,6 +107,7 @@ class StandingFrame {
   void solve_static();
   void go_first_order(const char* why);
   void balance();
+  bool may_ring() const;
   void make_dynamic();
   void move_on(const FrameLoads& now);
   void account_for_damping(const std::vector<double>& w);
@@ -117,7 +120,8 @@ class StandingFrame {
   const CollapseScene& scene_;
   const Frame& frame_;
   Solver static_, dynamic_;
-  std::vector<std::uint32_t> broken_, gone_;  ///< all that was taken out
+  std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
+  std::vector<std::uint32_t> broken_, gone_;         ///< all that was taken out
   std::vector<FrameLoads::OnPart> contacts_;
   std::vector<double> u_, v_, f_, scratch_, product_;  ///< when it rings
   std::vector<double> momentum_;                       ///< M v_, if it is known
