@@ -23,6 +23,8 @@ BlockMatrix::BlockMatrix(const std::vector<std::uint32_t>& place_of,
       diagonal_(place_of.size(), Matrix6{}),
       peak_(place_of.size()),
       start_(place_of.size() + 1, 0) {
+  node_at_.resize(place_of.size());
+  for (std::uint32_t node = 0; node < place_of.size(); ++node) node_at_[place_of[node]] = node;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> below;  // column, row
   for (const auto& [a, b] : edges) {
     assert(a != b && "an edge joins two nodes");
@@ -58,21 +60,26 @@ void BlockMatrix::add_on_diagonal(const Matrix12& delta, int first, std::uint32_
 }
 
 void BlockMatrix::multiply(std::span<const double> x, std::span<double> result) const {
-  std::vector<std::uint32_t> node_at(place_of_.size());
-  for (std::uint32_t node = 0; node < place_of_.size(); ++node) node_at[place_of_[node]] = node;
   std::fill(result.begin(), result.end(), 0.0);
-  for (std::uint32_t j = 0; j < node_at.size(); ++j) {
-    const double* x_j = &x[6 * node_at[j]];
-    double* y_j = &result[6 * node_at[j]];
-    for (std::size_t r = 0; r < 36; ++r) y_j[r / 6] += diagonal_[j][r] * x_j[r % 6];
+  for (std::uint32_t j = 0; j < node_at_.size(); ++j) {
+    const double* x_j = &x[6 * std::size_t{node_at_[j]}];
+    double sum[6] = {};
+    for (std::size_t r = 0; r < 6; ++r)
+      for (std::size_t c = 0; c < 6; ++c) sum[c] += diagonal_[j][6 * r + c] * x_j[r];
     for (std::size_t e = start_[j]; e < start_[j + 1]; ++e) {
-      const double* x_i = &x[6 * node_at[rows_[e]]];
-      double* y_i = &result[6 * node_at[rows_[e]]];
-      for (std::size_t r = 0; r < 36; ++r) {
-        y_i[r / 6] += blocks_[e][r] * x_j[r % 6];
-        y_j[r % 6] += blocks_[e][r] * x_i[r / 6];
+      const Matrix6& block = blocks_[e];
+      const double* x_i = &x[6 * std::size_t{node_at_[rows_[e]]}];
+      double* y_i = &result[6 * std::size_t{node_at_[rows_[e]]}];
+      for (std::size_t r = 0; r < 6; ++r) {
+        const double* row = &block[6 * r];
+        for (std::size_t c = 0; c < 6; ++c) sum[c] += row[c] * x_i[r];
+        const double even = row[0] * x_j[0] + row[2] * x_j[2] + row[4] * x_j[4];
+        const double odd = row[1] * x_j[1] + row[3] * x_j[3] + row[5] * x_j[5];
+        y_i[r] += even + odd;
       }
     }
+    double* y_j = &result[6 * std::size_t{node_at_[j]}];
+    for (std::size_t c = 0; c < 6; ++c) y_j[c] += sum[c];
   }
 }
 

@@ -41,7 +41,7 @@ class BlockMatrix {
  private:
   void add_on_diagonal(const Matrix12& delta, int first, std::uint32_t place);
 
-  std::vector<std::uint32_t> place_of_;
+  std::vector<std::uint32_t> place_of_, node_at_;
   std::vector<Matrix6> diagonal_, blocks_;
   std::vector<std::array<double, 6>> peak_;
   std::vector<std::size_t> start_;

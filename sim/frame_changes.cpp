@@ -70,6 +70,7 @@ void FrameSolver::Impl::renew_plate(std::uint32_t p) {
 
 void FrameSolver::Impl::update(std::vector<std::uint32_t> touched,
                                std::vector<std::uint32_t> touched_plates) {
+  unlay();
   sort_unique(touched);
   for (const std::uint32_t m : touched) {
     const bool was = members[m].present();

@@ -79,6 +79,12 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
   } else if (links.node_count() > 0) {
     factor.emplace(links.node_count(), edges);
   }
+  if (params.mass != 0) {
+    std::vector<std::uint32_t> places(links.node_count());
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = n;
+    masses.emplace(places, edges);
+    in_mass.assign(members.size(), {kNone, kNone, {}});
+  }
   update(std::move(all_members), std::move(all_plates));
   f.assign(6 * std::size_t{links.node_count()}, 0);
   u = f;
@@ -107,10 +113,11 @@ Twelve FrameSolver::Impl::end_force(std::uint32_t m, const Twelve& motion) const
   return result;
 }
 
-/// Shear of the diaphragms along the edges, from the stretch of their bars.
-void FrameSolver::Impl::add_diaphragm_shear(std::uint32_t s) {
+/// Shear of a diaphragm along its edges, from the stretch of its bars.
+void FrameSolver::Impl::shear_diaphragm(std::uint32_t s) {
   const FrameSlab& slab = frame.slabs[s];
-  const Diaphragm& diaphragm = diaphragms[s];
+  Diaphragm& diaphragm = diaphragms[s];
+  diaphragm.flow = 0;
   if (!diaphragm.active) return;
   std::array<double, 2> pull{};
   double diagonal = 0;
@@ -121,24 +128,50 @@ void FrameSolver::Impl::add_diaphragm_shear(std::uint32_t s) {
     pull[i] = diaphragm.stiffness[i] * dot(displacement(b) - displacement(a), across) / size;
     diagonal += size / 2;
   }
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 edge =
-        frame.nodes[slab.nodes[(i + 1) % 4]].position - frame.nodes[slab.nodes[i]].position;
-    const double flow = (i % 2 == 0 ? 1 : -1) * (pull[0] - pull[1]) / diagonal;
-    JointLoad& load = plate_loads[plates[s].joints[i]];
-    load.force = load.force + flow * edge;
-  }
+  diaphragm.flow = (pull[0] - pull[1]) / diagonal;
 }
 
+/// What of it a slab's joint passes to its beam.
+Vec3 FrameSolver::Impl::diaphragm_shear(std::uint32_t j) const {
+  const std::uint32_t s = frame.joints[j].a - frame.slab_part(0);
+  if (s >= diaphragms.size()) return {};
+  const FrameSlab& slab = frame.slabs[s];
+  const auto i =
+      static_cast<std::size_t>(std::ranges::find(plates[s].joints, j) - plates[s].joints.begin());
+  const Vec3 edge =
+      frame.nodes[slab.nodes[(i + 1) % 4]].position - frame.nodes[slab.nodes[i]].position;
+  return (i % 2 == 0 ? 1 : -1) * diaphragms[s].flow * edge;
+}
+
+/// result += what the bars of the diaphragms resist.
+void FrameSolver::Impl::add_diaphragms(std::span<const double> motion,
+                                       std::span<double> result) const {
+  for (const Diaphragm& diaphragm : diaphragms)
+    for (BlockChange bar : diaphragm.bars) {
+      if (bar.a == kNone) continue;
+      for (double& value : bar.delta.at) value /= params.stiffness;
+      add_product(bar, motion, result);
+    }
+}
+
+/// Forces of the members, and with them what resists the displacements.
 void FrameSolver::Impl::recover() {
+  stiff.assign(u.size(), 0);
   for (std::uint32_t m = 0; m < members.size(); ++m) {
+    const Member& member = members[m];
     forces[m] = fixed[m];
-    if (members[m].role != Role::elastic) continue;
-    const Twelve elastic = end_force(m, displacements_of(members[m], u));
-    for (std::size_t i = 0; i < 12; ++i) forces[m][i] += elastic[i];
+    if (member.role != Role::elastic) continue;
+    const Twelve elastic = end_force(m, displacements_of(member, u));
+    for (std::size_t i = 0; i < 12; ++i) {
+      forces[m][i] += elastic[i];
+      if (member.node[i / 6] < kFixed)
+        stiff[6 * std::size_t{member.node[i / 6]} + i % 6] += elastic[i];
+    }
   }
+  add_diaphragms(u, stiff);
+  laid.carries = pieces.empty();
   turn_hinges();
-  for (std::uint32_t s = 0; s < diaphragms.size(); ++s) add_diaphragm_shear(s);
+  for (std::uint32_t s = 0; s < diaphragms.size(); ++s) shear_diaphragm(s);
 }
 
 Vec3 FrameSolver::Impl::displacement(std::uint32_t frame_node) const {
@@ -291,7 +324,8 @@ JointLoad FrameSolver::joint_load(std::uint32_t j) const {
   if (!impl_->links.intact(j)) return {};
   if (joint.node == kNoPart) {
     const JointLoad& load = impl_->plate_loads[j];
-    return {into(joint.axes, load.force), into(joint.axes, load.torque)};
+    return {into(joint.axes, load.force + impl_->diaphragm_shear(j)),
+            into(joint.axes, load.torque)};
   }
   const double side = joint.end_a == 1 ? 1 : -1;
   return {side * into(joint.axes, reaction(j)), side * into(joint.axes, reaction_moment(j))};
@@ -348,10 +382,11 @@ double FrameSolver::pin_force() const {
 }
 
 double FrameSolver::strain_energy() const {
+  const std::vector<double>& u = impl_->u;
   std::vector<double> force(impl_->u.size());
-  stiffness_times(impl_->u, force);
+  stiffness_times(u, force);
   double sum = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) sum += force[i] * impl_->u[i];
+  for (std::size_t i = 0; i < u.size(); ++i) sum += force[i] * u[i];
   return sum / 2 + impl_->strain_of_hinges();
 }
 
@@ -373,13 +408,18 @@ std::span<const double> FrameSolver::displacements() const {
 }
 
 void FrameSolver::set_displacements(std::span<const double> u, const FrameLoads& loads) {
+  if (impl_->carries(u, loads)) return;
   impl_->collect(loads, impl_->f);
   std::ranges::copy(u, impl_->u.begin());
   impl_->recover();
 }
 
 void FrameSolver::load_vector(const FrameLoads& loads, std::span<double> f) const {
-  impl_->collect(loads, f);
+  if (impl_->pieces.empty()) {
+    impl_->nodal_load(loads, f);
+  } else {
+    impl_->collect(loads, f);
+  }
 }
 
 /// f = Σ of what `apply` makes of each member's displacements.
@@ -399,21 +439,21 @@ void FrameSolver::Impl::sum_members(std::span<const double> motion, std::span<do
 }
 
 void FrameSolver::stiffness_times(std::span<const double> u, std::span<double> f) const {
+  if (impl_->laid.carries && std::ranges::equal(u, impl_->u)) {
+    std::ranges::copy(impl_->stiff, f.begin());
+    return;
+  }
   impl_->sum_members(u, f, [&](std::uint32_t m, const Twelve& motion) {
     const bool elastic = impl_->members[m].role == Impl::Role::elastic;
     return elastic ? impl_->end_force(m, motion) : Twelve{};
   });
-  for (const Impl::Diaphragm& diaphragm : impl_->diaphragms)
-    for (BlockChange bar : diaphragm.bars) {
-      if (bar.a == Impl::kNone) continue;
-      for (double& value : bar.delta.at) value /= impl_->params.stiffness;
-      add_product(bar, u, f);
-    }
+  impl_->add_diaphragms(u, f);
 }
 
 void FrameSolver::mass_times(std::span<const double> a, std::span<double> f) const {
+  if (impl_->masses) return impl_->masses->multiply(a, f);
   impl_->sum_members(a, f, [&](std::uint32_t m, const Twelve& motion) {
-    return times(impl_->params.mass != 0 ? impl_->masses[m] : impl_->mass_matrix(m), motion);
+    return times(impl_->mass_matrix(m), motion);
   });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solvers beside others of the same building: in the same order again, and of a piece alone.
+// Solvers against others of the same building: in the same order again, of a piece alone, after
+// other loads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -245,6 +246,113 @@ TEST(FrameSolver, AWreckIsSolvedToTheRoundingOfItsDisplacements) {
     }
   }
   EXPECT_GT(mechanisms, 5u);
+}
+
+FrameLoads random_loads(const Frame& frame, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> any(-1, 1);
+  FrameLoads loads;
+  if (random() % 6 == 0) loads.gravity = {3 * any(random), -9.81, 0};
+  if (random() % 8 == 0) loads.gravity = {};
+  if (random() % 6 == 0) loads.live.assign(frame.slabs.size(), 1000 * any(random) * any(random));
+  for (std::uint64_t i = random() % 8; i > 0; --i) {
+    const auto part = static_cast<std::uint32_t>(random() % frame.part_count());
+    const Vec3 force{1e5 * any(random), 1e5 * any(random), 1e5 * any(random)};
+    loads.contacts.push_back({part, {6 + 6 * any(random), 8, 6 + 6 * any(random)}, force});
+  }
+  return loads;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = 0, largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    worst = std::max(worst, std::fabs(a[i] - b[i]));
+    largest = std::max(largest, std::fabs(b[i]));
+  }
+  return worst / std::max(largest, 1e-300);
+}
+
+/// Numbers that tell all that loads and displacements leave in a solver.
+std::vector<double> told_by(const Frame& frame, const FrameSolver& solver) {
+  std::vector<double> numbers;
+  for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
+    const JointLoad load = solver.joint_load(j);
+    for (const Vec3 v : {load.force, load.torque}) numbers.insert(numbers.end(), {v.x, v.y, v.z});
+  }
+  return numbers;
+}
+
+/// Weight, contacts and hinges come and go in a solver; another has never seen but the last.
+TEST(FrameSolver, LoadsThatComeAndGoLeaveNoTrace) {
+  const Frame frame = tower(3, 3, 3, 0.2);
+  for (const char* slabs : {"load", "diaphragm"}) {
+    const FrameSolverParams params{.slabs = slabs, .stiffness = 1.2, .mass = 1e4};
+    FrameSolver solver(frame, params);
+    std::mt19937_64 random(7);
+    std::vector<std::uint32_t> broken;
+    std::vector<FrameSolver::Hinge> hinges;
+    for (int step = 0; step < 40; ++step) {
+      if (step % 10 == 9) {
+        broken.push_back(static_cast<std::uint32_t>(random() % frame.joints.size()));
+        solver.break_joints({&broken.back(), 1});
+      }
+      if (step % 10 == 4) {
+        const auto joint = static_cast<std::uint32_t>(random() % frame.joints.size());
+        hinges = solver.hinges();
+        hinges.push_back({joint, {0, 1e4, -2e3}, {0, 1e-3, 0}, step % 20 == 4});
+        solver.set_hinges({&hinges.back(), 1});
+      }
+      const FrameLoads loads = random_loads(frame, random), other = random_loads(frame, random);
+      hinges = solver.hinges();
+      std::vector<double> u(solver.freedoms()), f(u.size()), g(u.size());
+      for (double& value : u) value = 1e-3 * std::sin(static_cast<double>(random() % 1000));
+      solver.set_displacements(u, loads);
+      const double work = solver.work_of(other);
+      solver.load_vector(other, f);
+      solver.set_displacements(u, loads);
+
+      FrameSolver fresh(frame, params, solver);
+      fresh.break_joints(broken);
+      fresh.set_hinges(hinges);
+      fresh.load_vector(other, g);
+      EXPECT_LT(distance(f, g), 1e-13) << slabs << ", step " << step;
+      fresh.stiffness_times(u, g);
+      solver.stiffness_times(u, f);
+      EXPECT_LT(distance(f, g), 1e-13) << slabs << ", step " << step;
+      fresh.set_displacements(u, loads);
+      EXPECT_LT(distance(told_by(frame, solver), told_by(frame, fresh)), 1e-12)
+          << slabs << ", step " << step;
+      EXPECT_NEAR(work, fresh.work_of(other), 1e-12 * 1e5) << slabs << ", step " << step;
+      EXPECT_NEAR(solver.strain_energy(), fresh.strain_energy(), 1e-12 * fresh.strain_energy());
+    }
+  }
+}
+
+/// Where no hinge turns work is that of the nodal loads.
+TEST(FrameSolver, WorkIsLoadsTimesDisplacements) {
+  const Frame frame = tower(3, 2, 3, 0.2);
+  FrameSolver solver(frame, {.mass = 1e4});
+  std::mt19937_64 random(3);
+  std::vector<double> f(solver.freedoms()), u(f.size());
+  for (int step = 0; step < 20; ++step) {
+    for (double& value : u) value = 1e-3 * std::cos(static_cast<double>(random() % 1000));
+    solver.set_displacements(u, {});
+    const FrameLoads loads = random_loads(frame, random);
+    solver.load_vector(loads, f);
+    double work = 0;
+    for (std::size_t i = 0; i < f.size(); ++i) work += f[i] * u[i];
+    EXPECT_NEAR(solver.work_of(loads), work, 1e-12 * 1e5) << "step " << step;
+  }
+}
+
+/// The rounds of the second order leave one shear in the diaphragms, not their sum.
+TEST(FrameSolver, UnderSmallLoadsSecondOrderIsFirstOrderAlsoInDiaphragms) {
+  const Frame frame = tower(3, 3, 3);
+  FrameSolver first(frame, {.slabs = "diaphragm"});
+  FrameSolver second(frame, {.p_delta = true, .slabs = "diaphragm"}, first);
+  const FrameLoads loads{.gravity = {0, -1e-3, 0}, .contacts = {{5, {0, 7, 0}, {30, 0, 20}}}};
+  first.solve(loads);
+  second.solve(loads);
+  EXPECT_LT(distance(told_by(frame, second), told_by(frame, first)), 1e-5);
 }
 
 }  // namespace
