@@ -42,7 +42,7 @@ double ElasticMotion::speed_ahead(std::uint32_t part) const {
 }
 
 /// The world takes what stands for fixed, so that light parts would get more speed than what struck
-/// them had: after a step in which they did, it is done again with as much force as they can take.
+/// them had: a step in which they would is solved again with as much force as they can take.
 void ElasticMotion::limit_blows() {
   if (!standing_.can_step_again()) return;
   std::vector<std::pair<std::uint32_t, double>> ahead;
@@ -60,7 +60,7 @@ void ElasticMotion::limit_blows() {
   standing_.swap_velocities();
   for (const auto& [part, share] : ahead) touches_.limit(part, share);
   press();
-  standing_.step_again();
+  standing_.solve_step();
 }
 
 Vec3 ElasticMotion::give_back(std::uint32_t part, double share) {

@@ -51,8 +51,9 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
   if (pressed) standing_.wake();
   inner_.follow(changed, touches_);
   if (standing_.rings()) {
-    standing_.step();
+    standing_.begin_step();
     limit_blows();
+    standing_.end_step();
     standing_.follow_hinges();
     standing_.fall_quiet(since_step_);
   } else {

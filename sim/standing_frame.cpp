@@ -157,10 +157,8 @@ void StandingFrame::make_dynamic() {
   bring_up_to_date(dynamic_);
   dynamic_.frame->set_hinges(static_.frame->hinges());
   v_.assign(dynamic_.frame->freedoms(), 0);
-  f_.resize(v_.size());
-  scratch_.resize(v_.size());
-  product_.resize(v_.size());
-  momentum_.resize(v_.size());
+  for (std::vector<double>* each : {&f_, &way_, &f_next_, &springs_, &scratch_, &momentum_})
+    each->resize(v_.size());
 }
 
 void StandingFrame::take_out(std::span<const std::uint32_t> joints,
@@ -215,10 +213,9 @@ void StandingFrame::take_state(const FrameSolver& old, const std::vector<double>
 
 double StandingFrame::kinetic() const {
   if (!in_time()) return 0;
-  std::vector<double> momentum = momentum_;
-  if (!is_momentum_known_) dynamic_.frame->mass_times(v_, momentum);
+  find_momentum();
   double twice = 0;
-  for (std::size_t i = 0; i < v_.size(); ++i) twice += v_[i] * momentum[i];
+  for (std::size_t i = 0; i < v_.size(); ++i) twice += v_[i] * momentum_[i];
   return twice / 2;
 }
 

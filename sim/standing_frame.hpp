@@ -29,7 +29,7 @@ class StandingFrame {
   void settle(const Progress& progress);
   std::vector<SupportReaction> supports() const;
 
-  // Loads. What has to be balanced is told by step() and carry_on().
+  // Loads, for the next step or carry_on().
   void set_time(double now) { now_ = now; }
   void set_contacts(std::vector<FrameLoads::OnPart> contacts);
   void add_live(double more);  ///< N/m² on all slabs; energy that it brings is not booked
@@ -38,12 +38,15 @@ class StandingFrame {
   bool rings() const { return rings_; }
   bool in_time() const { return rings_ && !scene_.simulation.quasi_static; }
   void wake();  ///< starts from the state at rest
-  void step();
+  /// Velocities at the end of the step; with other contacts solve_step() changes them.
+  void begin_step();
+  void solve_step();
+  void end_step();
   /// The last step can be done again with other contacts, from where it began.
   bool can_step_again() const { return can_step_again_; }
   void step_again();
-  /// Velocities before the last step take the place of those now, and back.
-  void swap_velocities() { std::swap(v_, before_step_.v); }
+  /// In a step: velocities when it began take the place of those now, and back.
+  void swap_velocities() { std::swap(v_, v_before_); }
   void follow_hinges();  ///< after a step; one that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 
@@ -109,8 +112,9 @@ class StandingFrame {
   void balance();
   bool may_ring() const;
   void make_dynamic();
-  void move_on(const FrameLoads& now);
-  void account_for_damping(const std::vector<double>& w);
+  void move_on();
+  void find_momentum() const;
+  void account_for_damping();
   void take_state(const FrameSolver& old, const std::vector<double>& u,
                   const std::vector<double>& v);
   std::vector<Hinge> stiff_hinges() const;
@@ -123,9 +127,10 @@ class StandingFrame {
   std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
   std::vector<std::uint32_t> broken_, gone_;         ///< all that was taken out
   std::vector<FrameLoads::OnPart> contacts_;
-  std::vector<double> u_, v_, f_, scratch_, product_;  ///< when it rings
-  std::vector<double> momentum_;                       ///< M v_, if it is known
-  bool is_momentum_known_ = false;
+  // When it rings; in a step its way, the loads at its end, and what was when it began.
+  std::vector<double> u_, v_, f_, way_, f_next_, v_before_, springs_, scratch_;
+  mutable std::vector<double> momentum_;  ///< M v_, if it is known
+  mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;   ///< by joint
   FrameLoads pushed_, shaken_;  ///< contacts and motion of the ground at the last loads
   Moment before_step_;

@@ -29,36 +29,43 @@ void StandingFrame::wake() {
   has_rung_ = true;
   const std::span<const double> rest = static_.frame->displacements();
   u_.assign(rest.begin(), rest.end());
-  std::ranges::fill(v_, 0);
+  std::ranges::fill(v_, 0.0);
   stand_on();
+}
+
+/// The momentum M v and the elastic forces K u at the beginning, and what the loads do until then.
+void StandingFrame::begin_step() {
+  if (!in_time()) return;
+  can_step_again_ = hinges_.empty() && !contacts_.empty();
+  if (can_step_again_ && !scene_.projectiles.empty())
+    before_step_ = {u_, v_, f_, pushed_, shaken_, losses_, given_};
+  find_momentum();
+  dynamic_.frame->stiffness_times(u_, springs_);
+  v_before_ = v_;
+  solve_step();
 }
 
 /// K* w = f₀ + f₁ − 2 K u₀ + (4/dt) M v₀, u₁ = u₀ + w, v₁ = (2/dt) w − v₀ with the loads at both
 /// ends: the trapezoidal rule on M v' = f − K u − C v, u' = v. Damping is in K* alone.
-void StandingFrame::step() {
+void StandingFrame::solve_step() {
+  const double dt = scene_.simulation.step;
+  dynamic_.frame->load_vector(loads(), f_next_);
+  for (std::size_t i = 0; i < f_.size(); ++i)
+    scratch_[i] = f_[i] + f_next_[i] - 2 * springs_[i] + 4 / dt * momentum_[i];
+  dynamic_.frame->solve_system(scratch_, way_);
+  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] = 2 / dt * way_[i] - v_before_[i];
+}
+
+void StandingFrame::end_step() {
   is_live_ = true;
-  if (scene_.simulation.quasi_static) {
+  if (!in_time()) {
     balance();
     return;
   }
-  const double dt = scene_.simulation.step;
-  const FrameLoads now = loads();
-  can_step_again_ = hinges_.empty() && !now.contacts.empty();
-  if (can_step_again_) before_step_ = {u_, v_, f_, pushed_, shaken_, losses_, given_};
-  std::vector<double>& next = scratch_;
-  dynamic_.frame->load_vector(now, next);
-  for (std::size_t i = 0; i < next.size(); ++i) std::swap(f_[i], next[i]), next[i] += f_[i];
-  dynamic_.frame->stiffness_times(u_, product_);
-  for (std::size_t i = 0; i < next.size(); ++i) next[i] -= 2 * product_[i];
-  if (!is_momentum_known_) dynamic_.frame->mass_times(v_, momentum_);
-  for (std::size_t i = 0; i < next.size(); ++i) next[i] += 4 / dt * momentum_[i];
-  dynamic_.frame->solve_system(next, product_);
-  for (std::size_t i = 0; i < next.size(); ++i) {
-    u_[i] += product_[i];
-    v_[i] = 2 / dt * product_[i] - v_[i];
-  }
-  account_for_damping(product_);
-  move_on(now);
+  for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += way_[i];
+  std::swap(f_, f_next_);
+  move_on();
+  account_for_damping();
 }
 
 void StandingFrame::step_again() {
@@ -71,13 +78,14 @@ void StandingFrame::step_again() {
   losses_ = before_step_.losses;
   given_ = before_step_.given;
   dynamic_.frame->set_displacements(u_, loads());
-  step();
+  begin_step();
+  end_step();
 }
 
 /// To u_. Contacts and the ground's own motion give the frame the mean of their forces at both ends
 /// of the step times the way.
-void StandingFrame::move_on(const FrameLoads& now) {
-  const FrameLoads pushes = touching(), shakes = shaking();
+void StandingFrame::move_on() {
+  const FrameLoads now = loads(), pushes = touching(), shakes = shaking();
   const bool touched = !pushed_.contacts.empty() || !pushes.contacts.empty();
   const bool shaken = !scene_.scenario.ground_motion.times.empty();
   FrameSolver& solver = *dynamic_.frame;
@@ -95,18 +103,22 @@ void StandingFrame::move_on(const FrameLoads& now) {
   shaken_ = shakes;
 }
 
+void StandingFrame::find_momentum() const {
+  if (!is_momentum_known_) dynamic_.frame->mass_times(v_, momentum_);
+  is_momentum_known_ = true;
+}
+
 /// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt.
-void StandingFrame::account_for_damping(const std::vector<double>& w) {
+void StandingFrame::account_for_damping() {
   const double dt = scene_.simulation.step;
   const double by_mass = scene_.simulation.damping_mass / 2;  // M w = dt (M v₀ + M v₁)/2
-  losses_.damping += by_mass * product_of(w, momentum_);
-  dynamic_.frame->mass_times(v_, momentum_);
-  is_momentum_known_ = true;
-  losses_.damping += by_mass * product_of(w, momentum_);
-  if (scene_.simulation.damping_stiffness > 0) {
-    dynamic_.frame->stiffness_times(w, scratch_);
-    losses_.damping += scene_.simulation.damping_stiffness / dt * product_of(w, scratch_);
-  }
+  losses_.damping += by_mass * product_of(way_, momentum_);
+  is_momentum_known_ = false;
+  find_momentum();
+  losses_.damping += by_mass * product_of(way_, momentum_);
+  dynamic_.frame->stiffness_times(u_, scratch_);  // K w = K u₁ − K u₀
+  losses_.damping += scene_.simulation.damping_stiffness / dt *
+                     (product_of(way_, scratch_) - product_of(way_, springs_));
 }
 
 void StandingFrame::fall_quiet(double dt) {
@@ -143,6 +155,7 @@ StandingFrame::Motion StandingFrame::motion(std::uint32_t node) const {
 
 void StandingFrame::stop_turning(std::uint32_t node) {
   const std::size_t first = dynamic_.frame->freedom(node);
+  is_momentum_known_ = false;
   if (first != FrameSolver::kHeld) std::fill_n(v_.begin() + static_cast<long>(first) + 3, 3, 0);
 }
 
