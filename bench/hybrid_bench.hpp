@@ -20,7 +20,8 @@ struct Size {
 std::string name_of(const Size& size);  ///< "3 × 3 × 12"
 Frame building_of(const Size& size);
 
-double cost_ms(const std::function<void()>& work);  ///< processor time, ms
+double cost_ms(const std::function<void()>& work);  ///< processor time of all threads, ms
+void wait_for_threads();                            ///< returns when no other thread is at work
 
 /// `count` beams' beginnings, nearest to a point of the facade first, or drawn all over.
 std::vector<std::uint32_t> beam_joints(const Frame& frame, std::size_t count, bool scattered);
@@ -28,7 +29,8 @@ std::vector<std::uint32_t> beam_joints(const Frame& frame, std::size_t count, bo
 /// A building that "hybrid" carries, without a run around it.
 class Standing {
  public:
-  Standing(const Frame& frame, double step, bool damped = true);
+  /// `ahead`: as if a projectile were on its way, what rings is factored in the background.
+  Standing(const Frame& frame, double step, bool damped = true, bool ahead = false);
   Standing(const Standing&) = delete;
   Standing& operator=(const Standing&) = delete;
 

@@ -2,6 +2,8 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "bench/hybrid_bench.hpp"
 #include "meshing/random.hpp"
@@ -42,10 +44,17 @@ std::vector<std::uint32_t> beam_joints(const Frame& frame, std::size_t count, bo
   return joints;
 }
 
-Standing::Standing(const Frame& frame, double step, bool damped)
+void wait_for_threads() {
+  constexpr auto kWhile = std::chrono::milliseconds(20);
+  while (cost_ms([&] { std::this_thread::sleep_for(kWhile); }) > 2) {
+  }
+}
+
+Standing::Standing(const Frame& frame, double step, bool damped, bool ahead)
     : world_({}), intact_(frame.joints.size(), 1) {
   scene_.frame = frame;
   scene_.simulation.step = step;
+  if (ahead) scene_.projectiles.emplace_back();
   if (!damped) scene_.simulation.damping_mass = scene_.simulation.damping_stiffness = 0;
   solids_ = solids_of(scene_.frame);
   motion_ = elastic_motion(scene_, world_, solids_);
@@ -59,6 +68,7 @@ void Standing::step() {
 }
 
 void Standing::judge() {
+  if (!motion_->any_live()) return;
   for (std::uint32_t j = 0; j < intact_.size(); ++j)
     if (intact_[j] != 0 && motion_->is_live(j))
       largest_ =

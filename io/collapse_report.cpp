@@ -37,6 +37,14 @@ void write_joints(JsonLines& json, const Frame& frame, const CollapseResult& r) 
   for (std::size_t i = 0; i < counts.size(); ++i) json.count(kBreakModes[i], counts[i]);
   json.close();
   json.count("broken_at_rest", r.broken_at_rest);
+  json.open("buckles", '[');
+  for (const Buckling& each : r.buckles) {
+    json.open('{');
+    json.number("time", each.time);
+    json.text("what", each.what);
+    json.close();
+  }
+  json.close();
 }
 
 void write_damage(JsonLines& json, const Frame& frame, const CollapseResult& r) {

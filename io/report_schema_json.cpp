@@ -93,6 +93,9 @@ constexpr ReportKey kCollapseKeys[] = {
     {"broken_by", "object", "How many broke in which mode."},
     {"broken_at_rest", "integer",
      "Of them, before a projectile, a removal, a load or a motion of the ground."},
+    {"buckles", "array",
+     "When what stands had no second-order equilibrium any more; from then on it is solved in "
+     "first order."},
     {"broken_bonds", "integer", "Of walls; 0: parts of a building do not break into chunks."},
     {"max_utilisation", "number", "Largest of any joint or post from time 0 on; 1 breaks."},
     {"utilisation_at_rest", "number", "Largest of any joint or post at time 0."},
@@ -119,6 +122,11 @@ constexpr ReportKey kJointBreakKeys[] = {
     {"component", "string",
      "The largest share: N, Vy, Vz, T, My or Mz; rotation of a plastic hinge that has turned as "
      "far as it can; empty in other modes."},
+};
+
+constexpr ReportKey kBucklingKeys[] = {
+    {"time", "number", "Unit: s."},
+    {"what", "string", "Where: the node, its storey (height) and members."},
 };
 
 constexpr ReportKey kJointYieldKeys[] = {
@@ -349,6 +357,7 @@ std::string collapse_report_schema() {
   joint["properties"]["mode"]["enum"] = kBreakModes;
   fill(properties["broken_joints"], list_of(std::move(joint)));
   fill(properties["yielded_joints"], list_of(object_of(kJointYieldKeys)));
+  fill(properties["buckles"], list_of(object_of(kBucklingKeys)));
   fill(properties["broken_by"], object_of(kModeKeys));
   fill(properties["sag"], object_of(kSagKeys));
   fill(properties["reactions"], object_of({kBuildingReactionKeys, kReactionKeys}));

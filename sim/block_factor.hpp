@@ -38,6 +38,11 @@ class BlockFactor {
  public:
   /// Edges may repeat; a != b. O(edges log edges) and METIS.
   BlockFactor(std::uint32_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges);
+  /// Takes the order from a factor of the same graph: the same bits, without METIS and the C
+  /// library's rand(). Reads only what never changes there, so other threads may use `like`. Throws
+  /// Error{input} if the graph is another one.
+  BlockFactor(std::uint32_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges,
+              const BlockFactor& like);
   ~BlockFactor();
   BlockFactor(BlockFactor&&) noexcept;
 
@@ -53,6 +58,8 @@ class BlockFactor {
   /// x = A⁻¹ b; six numbers per node. Takes half the time where b is that of the last solve but at
   /// few nodes; then the last digits depend on the solves before.
   void solve(std::span<const double> b, std::span<double> x) const;
+  /// x += A⁻¹ rest: refines a solution. No later solve starts from this one.
+  void correct(std::span<const double> rest, std::span<double> x) const;
   /// A x with the matrix as it is now: for residuals.
   void multiply(std::span<const double> x, std::span<double> result) const;
   FactorCounts counts() const;

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
+#include "meshing/error.hpp"
 #include "sim/block_factor.hpp"
 #include "sim/block_matrix.hpp"
 #include "sim/front_factor.hpp"
@@ -31,12 +33,12 @@ struct BlockFactor::Impl {
   mutable int reuses = kMostReuses;               // of `forwarded`
   bool is_current = false;  // the factor, with the correction, is that of the matrix
 
-  Impl(std::uint32_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
-      : tree(front_tree(nodes, edges)),
+  Impl(FrontTree ordered, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
+      : tree(std::move(ordered)),
         matrix(tree.place_of, edges),
         factor(tree),
         low_rank(tree),
-        work(6 * std::size_t{nodes}),
+        work(6 * tree.node_at.size()),
         last_b(work.size()) {
     counts.flops = factor.flops();
     for (const Front& front : tree.fronts) {
@@ -84,6 +86,11 @@ struct BlockFactor::Impl {
     return fronts;
   }
 
+  void take(std::span<const double> b) const {
+    for (std::size_t i = 0; i < tree.node_at.size(); ++i)
+      std::copy_n(&b[6 * tree.node_at[i]], 6, &work[6 * i]);
+  }
+
   /// work = L⁻¹ b: from the last b, where that differs at few nodes only.
   void forward(std::span<const double> b) const {
     if (reuses < kMostReuses) {
@@ -95,8 +102,7 @@ struct BlockFactor::Impl {
         return keep(b);
       }
     }
-    for (std::size_t i = 0; i < tree.node_at.size(); ++i)
-      std::copy_n(&b[6 * tree.node_at[i]], 6, &work[6 * i]);
+    take(b);
     factor.forward(work);
     reuses = 0;
     keep(b);
@@ -110,7 +116,20 @@ struct BlockFactor::Impl {
 
 BlockFactor::BlockFactor(std::uint32_t nodes,
                          std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
-    : impl_(std::make_unique<Impl>(nodes, edges)) {}
+    : impl_(std::make_unique<Impl>(front_tree(nodes, edges), edges)) {}
+BlockFactor::BlockFactor(std::uint32_t nodes,
+                         std::span<const std::pair<std::uint32_t, std::uint32_t>> edges,
+                         const BlockFactor& like) {
+  const FrontTree& tree = like.impl_->tree;
+  if (tree.node_at.size() == nodes) {
+    impl_ = std::make_unique<Impl>(tree, edges);
+    if (impl_->matrix.has_places_of(like.impl_->matrix)) return;
+  }
+  throw Error(ErrorCode::input, "block factor: the order of " +
+                                    std::to_string(tree.node_at.size()) +
+                                    " nodes is that of another graph, not of these " +
+                                    std::to_string(nodes) + "; give a factor of the same one");
+}
 BlockFactor::~BlockFactor() = default;
 BlockFactor::BlockFactor(BlockFactor&&) noexcept = default;
 
@@ -145,6 +164,18 @@ void BlockFactor::solve(std::span<const double> b, std::span<double> x) const {
   impl_->low_rank.apply(work);
   impl_->factor.backward(work);
   for (std::size_t i = 0; i < node_at.size(); ++i) std::copy_n(&work[6 * i], 6, &x[6 * node_at[i]]);
+}
+
+void BlockFactor::correct(std::span<const double> rest, std::span<double> x) const {
+  assert(impl_->is_current && "the factor stands for the matrix");
+  std::vector<double>& work = impl_->work;
+  const std::vector<std::uint32_t>& node_at = impl_->tree.node_at;
+  impl_->take(rest);
+  impl_->factor.forward(work);
+  impl_->low_rank.apply(work);
+  impl_->factor.backward(work);
+  for (std::size_t i = 0; i < node_at.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k) x[6 * node_at[i] + k] += work[6 * i + k];
 }
 
 void BlockFactor::multiply(std::span<const double> x, std::span<double> result) const {

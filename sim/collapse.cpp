@@ -67,6 +67,8 @@ CollapseRun::CollapseRun(const CollapseScene& scene, const CollapseParams& param
     result_.projectiles.back().ballistic_speed = std::numeric_limits<double>::infinity();
   }
   joints_.resize(frame_.joints.size());
+  intact_joints_ = joints_.size();
+  present_parts_ = parts_.size();
   for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
     joints_of_[frame_.joints[j].a].push_back(j);
     if (frame_.joints[j].b != kNoPart) joints_of_[frame_.joints[j].b].push_back(j);
@@ -90,6 +92,7 @@ void CollapseRun::add_panels() {
                          std::uint32_t& track = parts_[part].track;
                          if (track == kNoTrack) track = recorder_.add_track(kNoTrack);
                          parts_[part].removed = now_;
+                         --present_parts_;
                          return track;
                        }});
 }
@@ -212,6 +215,7 @@ void CollapseRun::remove_parts() {
     motion_->settle_breaks();
     motion_->remove_part(part);
     parts_[part].removed = now_;
+    --present_parts_;
   }
 }
 
@@ -346,7 +350,10 @@ void CollapseRun::record(double time) {
     if (track == kNoTrack) track = recorder_.add_track(kNoTrack);
     recorder_.add_pose(track, pose());
   };
-  for (std::uint32_t i = 0; i < parts_.size(); ++i)
+  const bool any_moving = motion_->any_moving();
+  if (!any_moving) result_.body_steps_asleep += present_parts_;
+  if (!any_moving) result_.poses_not_recorded += present_parts_;
+  for (std::uint32_t i = 0; any_moving && i < parts_.size(); ++i)
     if (!std::isfinite(parts_[i].removed))
       note(motion_->is_moving(i), parts_[i].track, [&] { return motion_->pose(i); });
   for (Shot& shot : shots_)
@@ -361,6 +368,7 @@ void CollapseRun::sample(double time) {
   for (std::uint32_t j = 0; j < joints_.size(); ++j)
     if (joints_[j].intact) result_.joint_gap = std::max(result_.joint_gap, motion_->joint_gap(j));
   if (!params_.keep_history) return;
+  all_known_ = false;
   const double last = sample_times_.empty() ? -1 : sample_times_.back();
   sample_times_.push_back(time);
   for (Joint& joint : joints_) {
@@ -412,6 +420,11 @@ CollapseResult CollapseRun::outcome() {
   r.plastic = losses.plastic;
   r.solves = motion_->solves();
   r.residual = motion_->residual();
+  if (const std::optional<Buckling> buckling = motion_->buckling()) {
+    r.buckles.push_back(*buckling);
+    r.warnings.push_back("at " + std::to_string(buckling->time) + " s " + buckling->what +
+                         "; from then on axial forces no longer make it softer");
+  }
   r.energy.numerical = r.energy_in - r.energy.kinetic - r.energy.potential - r.energy.strain -
                        r.energy.fracture - r.energy.friction - r.energy.contact - r.joint_work -
                        r.damping - r.plastic;

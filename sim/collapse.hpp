@@ -71,6 +71,12 @@ struct SolveCounts {
   std::uint64_t skipped = 0;  ///< steps in which nothing had to be solved
 };
 
+/// When the standing frame had no second-order equilibrium any more.
+struct Buckling {
+  double time = 0;   ///< s
+  std::string what;  ///< names the node, its storey (height) and members
+};
+
 /// Why a joint broke.
 struct JointBreak {
   std::uint32_t joint = 0;
@@ -113,6 +119,7 @@ struct CollapseResult {
   double sag_mean = 0, sag_max = 0;  ///< of the highest nodes of posts at time 0, m down
   std::string sag_node;              ///< where it is largest
   double sag_end = 0;                ///< largest of those still standing at the end, m
+  std::vector<Buckling> buckles;     ///< after time 0 with `p_delta`; from then on first order
   double joint_gap = 0;              ///< widest between the two sides of an intact joint, m
   double first_failure_load =
       0;                     ///< live load at the first failure of a rising load, N/m²; 0: none

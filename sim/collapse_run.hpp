@@ -107,11 +107,14 @@ class CollapseRun {
   std::vector<JointSample> samples_;
   CollapseResult result_;
   double now_ = 0, last_dt_ = 0, next_sample_ = 0;
-  bool breaks_ = false;     ///< settled: joints can break
-  bool disturbed_ = false;  ///< something has happened to the building
-  double added_load_ = 0;   ///< N/m²
-  double baseline_ = 0;     ///< potential energy of the projectiles where they started, J
-  double start_ = 0;        ///< energy of the standing frame at time 0, J
+  std::uint64_t intact_joints_ = 0, present_parts_ = 0;
+  bool all_known_ = false;    ///< no joint has to be read until a load changes or a sample is taken
+  bool posts_known_ = false;  ///< nor a post
+  bool breaks_ = false;       ///< settled: joints can break
+  bool disturbed_ = false;    ///< something has happened to the building
+  double added_load_ = 0;     ///< N/m²
+  double baseline_ = 0;       ///< potential energy of the projectiles where they started, J
+  double start_ = 0;          ///< energy of the standing frame at time 0, J
   Vec3 impulse_;
   double largest_momentum_ = 0, largest_momentum_error_ = 0;
 };

@@ -70,6 +70,7 @@ void FrameSolver::Impl::renew_plate(std::uint32_t p) {
 
 void FrameSolver::Impl::update(std::vector<std::uint32_t> touched,
                                std::vector<std::uint32_t> touched_plates) {
+  unlay();
   sort_unique(touched);
   for (const std::uint32_t m : touched) {
     const bool was = members[m].present();
@@ -103,6 +104,7 @@ void FrameSolver::set_plate_mass(std::uint32_t part, double mass) {
   impl_->lay_plate(plate, -1);
   plate.mass = mass;
   impl_->lay_plate(plate, 1);
+  impl_->unlay();
   if (impl_->params.mass == 0) return;
   std::vector<std::uint32_t> members;
   for (std::uint32_t i = 0; i < plate.joint_count; ++i)
@@ -212,7 +214,7 @@ void FrameSolver::Impl::refactor() {
   while (failed != BlockFactor::kNoNode) {
     const bool again =
         std::ranges::any_of(held, [&](const Restraint& r) { return r.node == failed; });
-    if (!built || again) {
+    if (again || (!built && !params.free)) {
       throw Error(ErrorCode::input,
                   "the frame is a mechanism: it moves without resistance at " + where(failed));
     }

@@ -158,6 +158,7 @@ double FrameSolver::Impl::strain_of_hinges() const {
 }
 
 double FrameSolver::Impl::work_of(const FrameLoads& loads) {
+  if (pieces.empty()) return work_on_elastic(loads);
   std::vector<double> load(u.size());
   collect(loads, load);
   double work = 0;

@@ -59,38 +59,41 @@ std::uint32_t FrameSolver::Impl::piece_of(const Member& member) const {
   return piece_of_node[member.node[0]];
 }
 
-void FrameSolver::Impl::add_load(std::uint32_t m, const BeamLoad& load) {
+/// What holds the nodes of a member under a load.
+Twelve FrameSolver::Impl::held_under(std::uint32_t m, const BeamLoad& load) const {
   const Member& member = members[m];
-  if (member.role == Role::elastic) {
-    const Twelve held_ends = fixed_end_of(unbent(m), load);
-    for (std::size_t i = 0; i < 12; ++i) fixed[m][i] += held_ends[i];
-    return;
-  }
+  if (member.role == Role::elastic) return fixed_end_of(unbent(m), load);
   const double length = member.response.length;
   const Vec3 x = member.response.axes.x;
-  const double held_at = member.held_end == 0 ? 0 : length;
+  const double held_at_x = member.held_end == 0 ? 0 : length;
   Vec3 force = length * load.uniform;
-  Vec3 moment = cross((length / 2 - held_at) * x, force);
+  Vec3 moment = cross((length / 2 - held_at_x) * x, force);
   for (const BeamLoad::Point& point : load.points) {
     force = force + point.force;
-    moment = moment + cross((point.at - held_at) * x, point.force) + point.moment;
+    moment = moment + cross((point.at - held_at_x) * x, point.force) + point.moment;
   }
   const std::size_t first = 6 * static_cast<std::size_t>(member.held_end);
-  add_to(fixed[m], first, -1 * force);
-  add_to(fixed[m], first + 3, -1 * moment);
+  Twelve by_nodes{};
+  add_to(by_nodes, first, -1 * force);
+  add_to(by_nodes, first + 3, -1 * moment);
+  return by_nodes;
 }
 
 /// Anywhere near a member: at the nearest point of its axis, with the moment of the arm.
-void FrameSolver::Impl::add_point(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) {
+Twelve FrameSolver::Impl::held_at(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) const {
   const Member& member = members[m];
-  if (!member.present()) return;
   const double at =
       std::clamp(dot(point - member.start, member.response.axes.x), 0.0, member.response.length);
   const Vec3 turn = moment + cross(point - member.at(at), force);
-  add_load(m, {.uniform = {}, .points = {{at, force, turn}}});
+  return held_under(m, {.uniform = {}, .points = {{at, force, turn}}});
 }
 
-void FrameSolver::Impl::add_contact_on_plate(std::uint32_t p, const FrameLoads::OnPart& contact) {
+void FrameSolver::Impl::add_load(std::uint32_t m, const BeamLoad& load) {
+  const Twelve by_nodes = held_under(m, load);
+  for (std::size_t i = 0; i < 12; ++i) fixed[m][i] += by_nodes[i];
+}
+
+void FrameSolver::Impl::share_contact(std::uint32_t p, const FrameLoads::OnPart& contact) {
   const PlateSupport& plate = plates[p];
   if (plate.rest == PlateSupport::Rest::none) return;
   std::array<Vec3, 4> points;
@@ -103,22 +106,27 @@ void FrameSolver::Impl::add_contact_on_plate(std::uint32_t p, const FrameLoads::
   }
   const SharedForce shared = share_force({points.data(), count}, contact.point, contact.force);
   for (std::size_t i = 0; i < count; ++i) {
-    add_point(frame.joints[joints[i]].b, points[i], shared.force[i], shared.torque);
-    JointLoad& load = plate_loads[joints[i]];
-    load.force = load.force + shared.force[i];
-    load.torque = load.torque + shared.torque;
+    const std::uint32_t m = frame.joints[joints[i]].b;
+    if (members[m].present())
+      contact_loads.members.emplace_back(m, held_at(m, points[i], shared.force[i], shared.torque));
+    contact_loads.plates.push_back({joints[i], {shared.force[i], shared.torque}});
   }
 }
 
-void FrameSolver::Impl::add_contacts(const FrameLoads& loads) {
+/// Valid until the next call.
+const FrameSolver::Impl::ContactLoads& FrameSolver::Impl::contacts_of(const FrameLoads& loads) {
   const std::uint32_t first_plate = frame.slab_part(0);
+  contact_loads.members.clear();
+  contact_loads.plates.clear();
   for (const FrameLoads::OnPart& contact : loads.contacts) {
-    if (contact.part < first_plate) {
-      add_point(contact.part, contact.point, contact.force, {});
-    } else {
-      add_contact_on_plate(contact.part - first_plate, contact);
+    if (contact.part >= first_plate) {
+      share_contact(contact.part - first_plate, contact);
+    } else if (members[contact.part].present()) {
+      contact_loads.members.emplace_back(contact.part,
+                                         held_at(contact.part, contact.point, contact.force, {}));
     }
   }
+  return contact_loads;
 }
 
 /// What varies along the member: exact fixed-end forces by Gauss's rules, of the linear load at two
@@ -156,7 +164,8 @@ void FrameSolver::Impl::add_field(std::uint32_t m, const MassField& field) {
   if (field.turns()) add_turning(m, line, field);
   for (const PointMass& point : point_masses[m]) {
     const Vec3 at = frame.joints[point.joint].point;
-    add_point(m, at, point.mass * field.at(at), {});
+    const Twelve by_nodes = held_at(m, at, point.mass * field.at(at), {});
+    for (std::size_t i = 0; i < 12; ++i) fixed[m][i] += by_nodes[i];
   }
 }
 
@@ -223,37 +232,62 @@ void FrameSolver::Impl::relieve_pieces() {
   }
 }
 
-/// What the joints of slabs and walls pass to their carriers as weight.
+/// Of the weight that a joint of a slab or wall passes to its carrier.
+Vec3 FrameSolver::Impl::plate_weight(const PlateSupport& plate, std::uint32_t i,
+                                     const FrameLoads& loads) const {
+  const std::size_t p = plate.part - frame.slab_part(0);
+  const double live = p < loads.live.size() ? loads.live[p] : 0;
+  const double mass = plate.mass + live * plate.area / kLoadGravity;
+  const FrameJoint& joint = frame.joints[plate.joints[i]];
+  const std::uint32_t piece = pieces.empty() ? kNone : piece_of(members[joint.b]);
+  return plate.share[i] * mass * (piece == kNone ? loads.gravity : fields[piece].at(joint.point));
+}
+
 void FrameSolver::Impl::weigh_plates(const FrameLoads& loads) {
-  for (std::size_t p = 0; p < plates.size(); ++p) {
-    const PlateSupport& plate = plates[p];
-    const double live = p < loads.live.size() ? loads.live[p] : 0;
-    const double mass = plate.mass + live * plate.area / kLoadGravity;
-    for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
-      if (plate.share[i] == 0) continue;
-      const FrameJoint& joint = frame.joints[plate.joints[i]];
-      const std::uint32_t piece = piece_of(members[joint.b]);
-      const MassField& field = piece == kNone ? fields.back() : fields[piece];
-      JointLoad& load = plate_loads[plate.joints[i]];
-      load.force = load.force + plate.share[i] * mass * field.at(joint.point);
+  plate_loads.assign(frame.joints.size(), {});
+  for (const PlateSupport& plate : plates)
+    for (std::uint32_t i = 0; i < plate.joint_count; ++i)
+      if (plate.share[i] != 0) plate_loads[plate.joints[i]].force = plate_weight(plate, i, loads);
+}
+
+/// Added loads as mass on the carriers.
+void FrameSolver::Impl::lay_live(const std::vector<double>& live) {
+  live_line.clear();
+  if (live.empty()) return;
+  live_line.resize(members.size());
+  for (std::size_t p = 0; p < frame.slabs.size() && p < live.size(); ++p)
+    for (std::uint32_t i = 0; i < plates[p].joint_count; ++i) {
+      const std::uint32_t m = frame.joints[plates[p].joints[i]].b;
+      live_line[m] += plates[p].share[i] * live[p] * plates[p].area /
+                      (kLoadGravity * members[m].response.length);
+    }
+}
+
+/// -fixed, by nodes.
+void FrameSolver::Impl::sum_at_nodes(std::span<double> result) const {
+  std::ranges::fill(result, 0.0);
+  for (std::uint32_t m = 0; m < members.size(); ++m) {
+    if (!members[m].present()) continue;
+    for (std::size_t end = 0; end < 2; ++end) {
+      const std::uint32_t node = members[m].node[end];
+      if (node >= kFixed) continue;
+      for (std::size_t i = 0; i < 6; ++i)
+        result[6 * std::size_t{node} + i] -= fixed[m][6 * end + i];
     }
   }
 }
 
+/// `fixed`, `plate_loads` and the nodal forces of these loads.
 void FrameSolver::Impl::collect(const FrameLoads& loads, std::span<double> result) {
-  fixed.assign(members.size(), {});
-  plate_loads.assign(frame.joints.size(), {});
-  live_line.clear();
-  if (!loads.live.empty()) {
-    live_line.resize(members.size());
-    for (std::size_t p = 0; p < frame.slabs.size() && p < loads.live.size(); ++p)
-      for (std::uint32_t i = 0; i < plates[p].joint_count; ++i) {
-        const std::uint32_t m = frame.joints[plates[p].joints[i]].b;
-        live_line[m] += plates[p].share[i] * loads.live[p] * plates[p].area /
-                        (kLoadGravity * members[m].response.length);
-      }
+  if (pieces.empty()) {
+    lay(loads);
+    nodal_load(loads, result);
+    return;
   }
-  if (!pieces.empty()) weigh_pieces();
+  unlay();
+  fixed.assign(members.size(), {});
+  lay_live(loads.live);
+  weigh_pieces();
   fields.assign(pieces.size() + 1, {{}, loads.gravity, {}, {}});
   for (std::size_t p = 0; p < pieces.size(); ++p) fields[p].origin = pieces[p].centre;
   for (const FrameLoads::Spin& spin : loads.spins) {
@@ -261,24 +295,22 @@ void FrameSolver::Impl::collect(const FrameLoads& loads, std::span<double> resul
     const std::uint32_t piece = piece_of(members[spin.part]);
     if (piece != kNone) fields[piece].spin = spin.angular_velocity;
   }
-  add_contacts(loads);
+  const ContactLoads& contacts = contacts_of(loads);
+  for (const auto& [m, held_nodes] : contacts.members)
+    for (std::size_t i = 0; i < 12; ++i) fixed[m][i] += held_nodes[i];
   for (std::uint32_t m = 0; m < members.size(); ++m) {
     if (!members[m].present()) continue;
-    const std::uint32_t piece = pieces.empty() ? kNone : piece_of(members[m]);
+    const std::uint32_t piece = piece_of(members[m]);
     add_field(m, piece == kNone ? fields.back() : fields[piece]);
   }
-  if (!pieces.empty()) relieve_pieces();
+  relieve_pieces();
   weigh_plates(loads);
-  load_hinges();
-  std::ranges::fill(result, 0.0);
-  for (std::uint32_t m = 0; m < members.size(); ++m) {
-    if (!members[m].present()) continue;
-    for (std::size_t end = 0; end < 2; ++end) {
-      const std::uint32_t node = members[m].node[end];
-      if (node >= kFixed) continue;
-      for (std::size_t i = 0; i < 6; ++i) result[6 * node + i] -= fixed[m][6 * end + i];
-    }
+  for (const auto& [j, load] : contacts.plates) {
+    plate_loads[j].force = plate_loads[j].force + load.force;
+    plate_loads[j].torque = plate_loads[j].torque + load.torque;
   }
+  load_hinges();
+  sum_at_nodes(result);
 }
 
 }  // namespace sunder

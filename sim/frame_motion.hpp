@@ -38,6 +38,7 @@ class FrameMotion {
   virtual JointLoad load(std::uint32_t joint) const = 0;
   /// False: no load of this joint has changed since it was read last.
   virtual bool is_live(std::uint32_t joint) const = 0;
+  virtual bool any_live() const { return true; }  ///< false: no joint is
   /// Joints let go; unless `bears_on` their parts do not touch each other from now on either.
   virtual void break_joint(std::uint32_t joint, bool bears_on) = 0;
   /// A joint's plastic hinge.
@@ -86,6 +87,7 @@ class FrameMotion {
   /// Of the part's own frame (see PartSolid) now.
   virtual Pose pose(std::uint32_t part) const = 0;
   virtual bool is_moving(std::uint32_t part) const = 0;
+  virtual bool any_moving() const { return true; }  ///< false: no part is
   /// kNoPart: the body is none of the building's.
   virtual std::uint32_t part_of(BodyId body, std::uint32_t prism) const = 0;
   virtual double sag(std::uint32_t member) const = 0;  ///< of the end of a member, m down
@@ -104,6 +106,7 @@ class FrameMotion {
   virtual double given() const = 0;  ///< energy that removed and added masses brought, J
   virtual SolveCounts solves() const = 0;
   virtual double residual() const = 0;  ///< of equilibrium, largest so far, relative
+  virtual std::optional<Buckling> buckling() const { return {}; }
 };
 
 /// Every part a rigid body, every joint six equations: the solver "bullet".

@@ -48,10 +48,13 @@ void add_product(const BlockChange& block, std::span<const double> u, std::span<
 
 }  // namespace
 
-FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters)
+FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters,
+                        const Impl* like)
     : frame(frame_to_hold), params(parameters), links(frame_to_hold) {
   check();
-  plates = plates_of(frame);
+  plates = plates_of(frame, params.wall_mass);
+  if (params.free)
+    for (PlateSupport& plate : plates) plate.on_ground = false;
   plates_on.resize(frame.members.size());
   for (std::uint32_t p = 0; p < plates.size(); ++p)
     for (std::uint32_t i = 0; i < plates[p].joint_count; ++i)
@@ -71,7 +74,17 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[0], slab.nodes[2], edges);
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[1], slab.nodes[3], edges);
   }
-  if (links.node_count() > 0) factor.emplace(links.node_count(), edges);
+  if (links.node_count() > 0 && like != nullptr && like->factor) {
+    factor.emplace(links.node_count(), edges, *like->factor);
+  } else if (links.node_count() > 0) {
+    factor.emplace(links.node_count(), edges);
+  }
+  if (params.mass != 0) {
+    std::vector<std::uint32_t> places(links.node_count());
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = n;
+    masses.emplace(places, edges);
+    in_mass.assign(members.size(), {kNone, kNone, {}});
+  }
   update(std::move(all_members), std::move(all_plates));
   f.assign(6 * std::size_t{links.node_count()}, 0);
   u = f;
@@ -100,10 +113,11 @@ Twelve FrameSolver::Impl::end_force(std::uint32_t m, const Twelve& motion) const
   return result;
 }
 
-/// Shear of the diaphragms along the edges, from the stretch of their bars.
-void FrameSolver::Impl::add_diaphragm_shear(std::uint32_t s) {
+/// Shear of a diaphragm along its edges, from the stretch of its bars.
+void FrameSolver::Impl::shear_diaphragm(std::uint32_t s) {
   const FrameSlab& slab = frame.slabs[s];
-  const Diaphragm& diaphragm = diaphragms[s];
+  Diaphragm& diaphragm = diaphragms[s];
+  diaphragm.flow = 0;
   if (!diaphragm.active) return;
   std::array<double, 2> pull{};
   double diagonal = 0;
@@ -114,24 +128,50 @@ void FrameSolver::Impl::add_diaphragm_shear(std::uint32_t s) {
     pull[i] = diaphragm.stiffness[i] * dot(displacement(b) - displacement(a), across) / size;
     diagonal += size / 2;
   }
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 edge =
-        frame.nodes[slab.nodes[(i + 1) % 4]].position - frame.nodes[slab.nodes[i]].position;
-    const double flow = (i % 2 == 0 ? 1 : -1) * (pull[0] - pull[1]) / diagonal;
-    JointLoad& load = plate_loads[plates[s].joints[i]];
-    load.force = load.force + flow * edge;
-  }
+  diaphragm.flow = (pull[0] - pull[1]) / diagonal;
 }
 
+/// What of it a slab's joint passes to its beam.
+Vec3 FrameSolver::Impl::diaphragm_shear(std::uint32_t j) const {
+  const std::uint32_t s = frame.joints[j].a - frame.slab_part(0);
+  if (s >= diaphragms.size()) return {};
+  const FrameSlab& slab = frame.slabs[s];
+  const auto i =
+      static_cast<std::size_t>(std::ranges::find(plates[s].joints, j) - plates[s].joints.begin());
+  const Vec3 edge =
+      frame.nodes[slab.nodes[(i + 1) % 4]].position - frame.nodes[slab.nodes[i]].position;
+  return (i % 2 == 0 ? 1 : -1) * diaphragms[s].flow * edge;
+}
+
+/// result += what the bars of the diaphragms resist.
+void FrameSolver::Impl::add_diaphragms(std::span<const double> motion,
+                                       std::span<double> result) const {
+  for (const Diaphragm& diaphragm : diaphragms)
+    for (BlockChange bar : diaphragm.bars) {
+      if (bar.a == kNone) continue;
+      for (double& value : bar.delta.at) value /= params.stiffness;
+      add_product(bar, motion, result);
+    }
+}
+
+/// Forces of the members, and with them what resists the displacements.
 void FrameSolver::Impl::recover() {
+  stiff.assign(u.size(), 0);
   for (std::uint32_t m = 0; m < members.size(); ++m) {
+    const Member& member = members[m];
     forces[m] = fixed[m];
-    if (members[m].role != Role::elastic) continue;
-    const Twelve elastic = end_force(m, displacements_of(members[m], u));
-    for (std::size_t i = 0; i < 12; ++i) forces[m][i] += elastic[i];
+    if (member.role != Role::elastic) continue;
+    const Twelve elastic = end_force(m, displacements_of(member, u));
+    for (std::size_t i = 0; i < 12; ++i) {
+      forces[m][i] += elastic[i];
+      if (member.node[i / 6] < kFixed)
+        stiff[6 * std::size_t{member.node[i / 6]} + i % 6] += elastic[i];
+    }
   }
+  add_diaphragms(u, stiff);
+  laid.carries = pieces.empty();
   turn_hinges();
-  for (std::uint32_t s = 0; s < diaphragms.size(); ++s) add_diaphragm_shear(s);
+  for (std::uint32_t s = 0; s < diaphragms.size(); ++s) shear_diaphragm(s);
 }
 
 Vec3 FrameSolver::Impl::displacement(std::uint32_t frame_node) const {
@@ -150,6 +190,34 @@ double FrameSolver::Impl::axial(std::uint32_t m) const {
     sum += (end == 0 ? -0.5 : 0.5) * dot(x, force);
   }
   return members[m].present() ? sum : 0;
+}
+
+/// f - K u, and its largest number.
+double FrameSolver::Impl::rest_of(std::span<const double> motion) {
+  rest.resize(f.size());
+  factor->multiply(motion, rest);
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = f[i] - rest[i];
+  return largest(rest);
+}
+
+/// u = K⁻¹ f, refined while that helps: pins and springs that hold mechanisms cost digits.
+void FrameSolver::Impl::solve_refined() {
+  constexpr int kMostRounds = 3;
+  constexpr double kSmall = 1e-12;
+  if (!factor) return;
+  factor->solve(f, u);
+  const double small = kSmall * largest(f);
+  double left = rest_of(u);
+  for (int round = 0; round < kMostRounds && left > small; ++round) {
+    before = u;
+    factor->correct(rest, u);
+    const double now = rest_of(u);
+    if (!(now < left)) {
+      u.swap(before);
+      return;
+    }
+    left = now;
+  }
 }
 
 /// Second order: the geometric stiffness follows the axial forces until they no longer change.
@@ -178,7 +246,7 @@ void FrameSolver::Impl::iterate_second_order() {
       refactor();
       throw Error(ErrorCode::input, "the frame buckles under its loads, first at " + where(failed));
     }
-    factor->solve(f, u);
+    solve_refined();
     recover();
   }
   throw Error(ErrorCode::input,
@@ -186,7 +254,10 @@ void FrameSolver::Impl::iterate_second_order() {
 }
 
 FrameSolver::FrameSolver(const Frame& frame, const FrameSolverParams& params)
-    : impl_(std::make_unique<Impl>(frame, params)) {}
+    : impl_(std::make_unique<Impl>(frame, params, nullptr)) {}
+FrameSolver::FrameSolver(const Frame& frame, const FrameSolverParams& params,
+                         const FrameSolver& like)
+    : impl_(std::make_unique<Impl>(frame, params, like.impl_.get())) {}
 FrameSolver::~FrameSolver() = default;
 
 void FrameSolver::break_joints(std::span<const std::uint32_t> joints) {
@@ -243,7 +314,7 @@ std::vector<Mechanism> FrameSolver::mechanisms() const {
 
 void FrameSolver::solve(const FrameLoads& loads) {
   impl_->collect(loads, impl_->f);
-  if (impl_->factor) impl_->factor->solve(impl_->f, impl_->u);
+  impl_->solve_refined();
   impl_->recover();
   if (impl_->params.p_delta) impl_->iterate_second_order();
 }
@@ -253,7 +324,8 @@ JointLoad FrameSolver::joint_load(std::uint32_t j) const {
   if (!impl_->links.intact(j)) return {};
   if (joint.node == kNoPart) {
     const JointLoad& load = impl_->plate_loads[j];
-    return {into(joint.axes, load.force), into(joint.axes, load.torque)};
+    return {into(joint.axes, load.force + impl_->diaphragm_shear(j)),
+            into(joint.axes, load.torque)};
   }
   const double side = joint.end_a == 1 ? 1 : -1;
   return {side * into(joint.axes, reaction(j)), side * into(joint.axes, reaction_moment(j))};
@@ -310,10 +382,11 @@ double FrameSolver::pin_force() const {
 }
 
 double FrameSolver::strain_energy() const {
+  const std::vector<double>& u = impl_->u;
   std::vector<double> force(impl_->u.size());
-  stiffness_times(impl_->u, force);
+  stiffness_times(u, force);
   double sum = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) sum += force[i] * impl_->u[i];
+  for (std::size_t i = 0; i < u.size(); ++i) sum += force[i] * u[i];
   return sum / 2 + impl_->strain_of_hinges();
 }
 
@@ -335,13 +408,18 @@ std::span<const double> FrameSolver::displacements() const {
 }
 
 void FrameSolver::set_displacements(std::span<const double> u, const FrameLoads& loads) {
+  if (impl_->carries(u, loads)) return;
   impl_->collect(loads, impl_->f);
   std::ranges::copy(u, impl_->u.begin());
   impl_->recover();
 }
 
 void FrameSolver::load_vector(const FrameLoads& loads, std::span<double> f) const {
-  impl_->collect(loads, f);
+  if (impl_->pieces.empty()) {
+    impl_->nodal_load(loads, f);
+  } else {
+    impl_->collect(loads, f);
+  }
 }
 
 /// f = Σ of what `apply` makes of each member's displacements.
@@ -361,21 +439,21 @@ void FrameSolver::Impl::sum_members(std::span<const double> motion, std::span<do
 }
 
 void FrameSolver::stiffness_times(std::span<const double> u, std::span<double> f) const {
+  if (impl_->laid.carries && std::ranges::equal(u, impl_->u)) {
+    std::ranges::copy(impl_->stiff, f.begin());
+    return;
+  }
   impl_->sum_members(u, f, [&](std::uint32_t m, const Twelve& motion) {
     const bool elastic = impl_->members[m].role == Impl::Role::elastic;
     return elastic ? impl_->end_force(m, motion) : Twelve{};
   });
-  for (const Impl::Diaphragm& diaphragm : impl_->diaphragms)
-    for (BlockChange bar : diaphragm.bars) {
-      if (bar.a == Impl::kNone) continue;
-      for (double& value : bar.delta.at) value /= impl_->params.stiffness;
-      add_product(bar, u, f);
-    }
+  impl_->add_diaphragms(u, f);
 }
 
 void FrameSolver::mass_times(std::span<const double> a, std::span<double> f) const {
+  if (impl_->masses) return impl_->masses->multiply(a, f);
   impl_->sum_members(a, f, [&](std::uint32_t m, const Twelve& motion) {
-    return times(impl_->params.mass != 0 ? impl_->masses[m] : impl_->mass_matrix(m), motion);
+    return times(impl_->mass_matrix(m), motion);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/block_factor.hpp"
+#include "sim/block_matrix.hpp"
 #include "sim/frame_links.hpp"
 #include "sim/frame_solver.hpp"
 #include "sim/member_response.hpp"
@@ -26,7 +27,7 @@ struct MassField {
 };
 
 struct FrameSolver::Impl {
-  Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters);
+  Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters, const Impl* like);
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   /// elastic: an element of the stiffness. hanging: a rigid cantilever at its held end.
@@ -52,6 +53,7 @@ struct FrameSolver::Impl {
     std::array<BlockChange, 2> bars{BlockChange{kNone, kNone, {}}, BlockChange{kNone, kNone, {}}};
     std::array<double, 2> stiffness{};
     bool active = false;
+    double flow = 0;  ///< shear along its first edge by the last displacements, N/m
   };
   /// A member with plastic hinges; moments and rotations (of its nodes against its ends) in its own
   /// axes, of y and z.
@@ -77,6 +79,26 @@ struct FrameSolver::Impl {
     BlockChange block;
   };
 
+  /// What contacts do to the members they are on and the joints of plates that pass them on.
+  struct ContactLoads {
+    std::vector<std::pair<std::uint32_t, Twelve>> members;    ///< what holds their nodes
+    std::vector<std::pair<std::uint32_t, JointLoad>> plates;  ///< by joint, on the carrier
+  };
+  /// All masses in a unit field along each axis, as far as asked for since the model changed.
+  struct Weight {
+    std::vector<double> live;  ///< of these loads
+    std::array<bool, 3> known{};
+    std::array<std::vector<Twelve>, 3> fixed;
+    std::array<std::vector<double>, 3> f;  ///< nodal, as if hinges were rigid
+  };
+  /// What `fixed` and `plate_loads` hold: the weight but for these members and joints.
+  struct Laid {
+    bool weight = false;   ///< else they are to be written anew
+    bool carries = false;  ///< `forces` and `stiff` are those of `loads` and `u`
+    FrameLoads loads;
+    std::vector<std::uint32_t> members, joints;
+  };
+
   // frame_stiffness.cpp: what can be wrong, and what the members are.
   void check() const;
   void make_members();
@@ -85,6 +107,7 @@ struct FrameSolver::Impl {
   Matrix12 mass_matrix(std::uint32_t m) const;
   void renew(std::uint32_t m);  ///< role, element, stiffness from the links
   void renew_in_factor(std::uint32_t m);
+  void set_mass(std::uint32_t m, const BlockChange& next);
   void put(const BlockChange& change);
   void set_in_factor(BlockChange& now, const BlockChange& next);
   void renew_diaphragm(std::uint32_t slab);
@@ -113,24 +136,41 @@ struct FrameSolver::Impl {
 
   // frame_loads.cpp: from loads to nodal forces.
   void collect(const FrameLoads& loads, std::span<double> f);
+  Twelve held_under(std::uint32_t m, const BeamLoad& load) const;
+  Twelve held_at(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) const;
   void add_load(std::uint32_t m, const BeamLoad& load);
-  void add_contacts(const FrameLoads& loads);
-  void add_contact_on_plate(std::uint32_t plate, const FrameLoads::OnPart& contact);
-  void add_point(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment);
+  const ContactLoads& contacts_of(const FrameLoads& loads);
+  void share_contact(std::uint32_t plate, const FrameLoads::OnPart& contact);
+  void lay_live(const std::vector<double>& live);
   void add_field(std::uint32_t m, const MassField& field);
   void add_turning(std::uint32_t m, double line, const MassField& field);
   double line_mass(std::uint32_t m) const;
   void weigh_pieces();
   void relieve_pieces();
   void weigh_plates(const FrameLoads& loads);
+  Vec3 plate_weight(const PlateSupport& plate, std::uint32_t i, const FrameLoads& loads) const;
+  void sum_at_nodes(std::span<double> result) const;
   std::uint32_t piece_of(const Member& member) const;
+
+  // frame_weight.cpp: the same where nothing flies, from what changes between two loads.
+  void know_weight(const FrameLoads& loads);
+  Twelve held_by(std::uint32_t m, const FrameLoads& loads, const ContactLoads& contacts) const;
+  void nodal_load(const FrameLoads& loads, std::span<double> result);
+  void lay(const FrameLoads& loads);
+  void unlay();
+  double work_on_elastic(const FrameLoads& loads);
+  bool carries(std::span<const double> motion, const FrameLoads& loads) const;
 
   // frame_solver.cpp: breaking, and from displacements to forces.
   void break_joints(std::span<const std::uint32_t> joints);
   Twelve displacements_of(const Member& member, std::span<const double> motion) const;
   Twelve end_force(std::uint32_t m, const Twelve& motion) const;
-  void add_diaphragm_shear(std::uint32_t slab);
+  void shear_diaphragm(std::uint32_t slab);
+  Vec3 diaphragm_shear(std::uint32_t joint) const;
+  void add_diaphragms(std::span<const double> motion, std::span<double> result) const;
   void recover();
+  double rest_of(std::span<const double> motion);
+  void solve_refined();
   void iterate_second_order();
   Vec3 displacement(std::uint32_t frame_node) const;
   double axial(std::uint32_t m) const;
@@ -147,7 +187,8 @@ struct FrameSolver::Impl {
   std::vector<BeamElement> elements;                 ///< of the members
   std::vector<std::vector<PointMass>> point_masses;  ///< of walls that hang, per member
   std::vector<BlockChange> in_factor;                ///< per member
-  std::vector<Matrix12> masses;                      ///< per member, if they are in the factor
+  std::optional<BlockMatrix> masses;                 ///< if it is in the factor
+  std::vector<BlockChange> in_mass;                  ///< per member
   std::vector<Bent> bent;                            ///< by when they first had a hinge
   std::vector<std::uint32_t> bent_of;                ///< per member; kNone: it has none
   std::vector<double> axial_in_factor;               ///< N, of the geometric stiffness
@@ -171,7 +212,12 @@ struct FrameSolver::Impl {
   std::vector<Twelve> fixed, forces;   ///< per member: of the nodes on it, world
   std::vector<MassField> fields;       ///< per piece; last: what stands on the ground
   std::vector<JointLoad> plate_loads;  ///< per joint: force and torque on the carrier, world
+  Weight weight;
+  Laid laid;
+  ContactLoads contact_loads;
   std::vector<double> f, u;
+  std::vector<double> stiff;         ///< stiffness × u
+  std::vector<double> rest, before;  ///< of the refinement
 };
 
 }  // namespace sunder

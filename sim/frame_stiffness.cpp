@@ -270,6 +270,15 @@ void FrameSolver::Impl::set_in_factor(BlockChange& now, const BlockChange& next)
   now = next;
 }
 
+void FrameSolver::Impl::set_mass(std::uint32_t m, const BlockChange& next) {
+  BlockChange& now = in_mass[m];
+  if (now.a == next.a && now.b == next.b && now.delta.at == next.delta.at) return;
+  for (double& value : now.delta.at) value = -value;
+  if (now.a < kFixed) masses->add(now);
+  if (next.a < kFixed) masses->add(next);
+  now = next;
+}
+
 void FrameSolver::Impl::renew_in_factor(std::uint32_t m) {
   Member& member = members[m];
   Matrix12 matrix;
@@ -286,11 +295,13 @@ void FrameSolver::Impl::renew_in_factor(std::uint32_t m) {
     node[1 - static_cast<std::size_t>(member.held_end)] = kFree;
   }
   const bool massive = params.mass != 0 && member.present();
+  BlockChange own{kNone, kNone, {}};
   if (massive) {
-    masses.resize(members.size());
-    masses[m] = mass_matrix(m);
-    for (std::size_t i = 0; i < 144; ++i) matrix.at[i] += params.mass * masses[m].at[i];
+    const Matrix12 its_mass = mass_matrix(m);
+    for (std::size_t i = 0; i < 144; ++i) matrix.at[i] += params.mass * its_mass.at[i];
+    own = between(node, its_mass);
   }
+  if (masses) set_mass(m, own);
   const bool takes_part = member.role == Role::elastic || massive;
   set_in_factor(in_factor[m], takes_part ? between(node, matrix) : BlockChange{kNone, kNone, {}});
 }
@@ -302,6 +313,10 @@ void FrameSolver::Impl::renew_diaphragm(std::uint32_t slab) {
   std::array<std::uint32_t, 4> node{};
   diaphragm.active = true;
   for (std::size_t i = 0; i < 4; ++i) {
+    if (corners.beams[i] == kNoPart) {
+      diaphragm.active = false;
+      break;
+    }
     const FrameMember& beam = frame.members[corners.beams[i]];
     const Member& member = members[corners.beams[i]];
     diaphragm.active &= plates[slab].carries[i] && member.role == Role::elastic &&

@@ -9,8 +9,9 @@
 namespace sunder {
 namespace {
 
-/// A pivot of no more than this share of its diagonal entry is rounding: a mechanism.
-constexpr double kPivotShare = 1e-13;
+/// A pivot of no more than this share of what its entry on the diagonal has been is rounding: a
+/// mechanism. The tip of a mast of a hundred inclined members of slenderness 100 keeps 3e-10.
+constexpr double kPivotShare = 1e-10;
 
 std::size_t packed_size(std::size_t rows) {
   return rows * (rows + 1) / 2;
@@ -75,8 +76,7 @@ void FrontFactor::assemble(std::uint32_t f, const BlockMatrix& matrix) {
       for (std::size_t i = 0; i < 36; ++i) to[i % 6 * rows + i / 6] = block[i];
     };
     put(c, matrix.diagonal(place));
-    for (std::size_t i = 0; i < 6; ++i)
-      floor_[6 * c + i] = kPivotShare * matrix.diagonal(place)[7 * i];
+    for (std::size_t i = 0; i < 6; ++i) floor_[6 * c + i] = kPivotShare * matrix.peak(place)[i];
     auto below = front.below.begin();
     const auto places = matrix.rows(place);
     for (std::size_t e = 0; e < places.size(); ++e) {

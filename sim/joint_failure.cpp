@@ -117,6 +117,11 @@ std::uint32_t CollapseRun::struck_part(const Contact& contact, BodyId ball) cons
 }
 
 void CollapseRun::read_loads(std::vector<Failure>& failures) {
+  if (params_.skip && all_known_ && !motion_->any_live()) {
+    result_.joint_steps_not_read += intact_joints_;
+    return;
+  }
+  all_known_ = true;
   for (std::uint32_t j = 0; j < joints_.size(); ++j) {
     Joint& state = joints_[j];
     if (!state.intact) continue;
@@ -139,6 +144,7 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
                     static_cast<float>(use.torque), static_cast<float>(use.total)};
     }
     state.is_read = true;
+    all_known_ &= use.total < 1;
     if (use.total >= 1)
       failures.push_back({j, use.total, "strength", frame_.classes[joint.joint_class].interaction,
                           std::string(use.component), true});
@@ -179,12 +185,15 @@ bool CollapseRun::yields(const Failure& failure) {
 }
 
 void CollapseRun::check_posts(std::vector<Failure>& failures) {
+  if (params_.skip && posts_known_ && !motion_->any_live()) return;
+  posts_known_ = true;
   for (const std::uint32_t post : posts_.posts()) {
     const std::uint32_t foot = posts_.foot(post);
     if (foot == kNoPart) continue;
     const double compression = -motion_->load(foot).force.x;
     if (compression <= 0) continue;
     const double use = compression / posts_.resistance(post);
+    posts_known_ &= use < 1;
     result_.max_utilisation = std::max(result_.max_utilisation, use);
     if (use < 1) continue;
     for (const std::uint32_t j : posts_.joints_of_buckling(post))
@@ -245,6 +254,7 @@ void CollapseRun::break_joints(std::vector<Failure> failures) {
 void CollapseRun::break_joint(const Failure& failure) {
   Joint& state = joints_[failure.joint];
   state.intact = false;
+  --intact_joints_;
   state.broken = now_;
   posts_.break_joint(failure.joint);
   motion_->break_joint(failure.joint, failure.bears_on);

@@ -203,6 +203,7 @@ std::uint32_t Panels::present(std::uint32_t w) const {
 void Panels::come_loose(std::uint32_t w, BodyId struck) {
   Panel& panel = panels_[w];
   host_.break_off(panel.part);
+  const double kinetic = host_.world.kinetic_energy(), potential = host_.world.potential_energy();
   const FrameMotion::Leaving leaves = host_.motion.release(panel.part);
   const Pose to_wall{origin_of(panel), {}};
   const WallRun::Motion motion{leaves.pose * to_wall, leaves.centre, leaves.velocity,
@@ -215,6 +216,9 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
     if (struck != kNoBody) walls_.rename(struck, w);
   }
   panel.stands = false;
+  // What is left of the panel is not where the middle of the whole was.
+  shift_ += host_.world.potential_energy() - potential;
+  result_.energy.contact -= host_.world.kinetic_energy() - kinetic;
 }
 
 /// Whether a contact had the energy to crack the panel across its thickness.

@@ -50,7 +50,7 @@ class Panels {
 
   void record() { walls_.record_islands(); }
   bool any_awake() const { return any_awake_; }
-  double baseline() const { return walls_.baseline(); }
+  double baseline() const { return walls_.baseline() + shift_; }
   Vec3 impulse() const { return walls_.impulse(); }
   const EnergyLedger& energy() const { return result_.energy; }
   std::uint64_t count() const { return panels_.size(); }
@@ -90,6 +90,7 @@ class Panels {
   const ImpactParams params_;
   ImpactResult result_;
   std::vector<Panel> panels_;                 ///< by wall
+  double shift_ = 0;        ///< of the baseline, J
   bool any_awake_ = false;                    ///< something was near a panel
   std::vector<std::uint32_t> panel_of_part_;  ///< kNoPart: it does not break
   WallRun walls_;

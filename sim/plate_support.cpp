@@ -135,7 +135,7 @@ SharedForce share_force(std::span<const Vec3> points, Vec3 at, Vec3 force) {
   return result;
 }
 
-std::vector<PlateSupport> plates_of(const Frame& frame) {
+std::vector<PlateSupport> plates_of(const Frame& frame, std::span<const double> wall_mass) {
   std::vector<PlateSupport> plates(frame.slabs.size() + frame.walls.size());
   const std::uint32_t first = frame.slab_part(0);
   for (std::uint32_t i = 0; i < plates.size(); ++i) plates[i].part = first + i;
@@ -147,14 +147,12 @@ std::vector<PlateSupport> plates_of(const Frame& frame) {
                                slab.live_load / kLoadGravity);
     plate.centre = bay_centre(frame, slab);
   }
-  if (!frame.walls.empty()) {
-    const std::vector<PartSolid> solids = solids_of(frame);
-    for (std::uint32_t w = 0; w < frame.walls.size(); ++w) {
-      PlateSupport& plate = plates[frame.slabs.size() + w];
-      plate.mass = solids[plate.part].mass;
-      plate.centre = solids[plate.part].centre;
-      plate.on_ground = frame.walls[w].edges[0] == kNoPart;
-    }
+  std::vector<PartSolid> solids;
+  if (!frame.walls.empty() && wall_mass.empty()) solids = solids_of(frame);
+  for (std::uint32_t w = 0; w < frame.walls.size(); ++w) {
+    PlateSupport& plate = plates[frame.slabs.size() + w];
+    plate.mass = solids.empty() ? wall_mass[w] : solids[plate.part].mass;
+    plate.on_ground = frame.walls[w].edges[0] == kNoPart;
   }
   for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
     if (frame.joints[j].a < first) continue;

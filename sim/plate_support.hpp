@@ -28,9 +28,9 @@ struct PlateSupport {
   std::uint32_t part = 0;
   std::array<std::uint32_t, 4> joints{};  ///< all of the part's, intact or not
   std::uint32_t joint_count = 0;
-  double mass = 0;  ///< kg
-  double area = 0;  ///< of slabs, m²: takes added live load; of walls 0
-  Vec3 centre;
+  double mass = 0;         ///< kg
+  double area = 0;         ///< of slabs, m²: takes added live load; of walls 0
+  Vec3 centre;             ///< of slabs
   bool on_ground = false;  ///< a wall of the ground floor
 
   Rest rest = Rest::none;
@@ -38,8 +38,9 @@ struct PlateSupport {
   std::array<bool, 4> carries{};  ///< joints that carry
 };
 
-/// Slabs and walls with their joints; `rest` is not yet known. O(parts).
-std::vector<PlateSupport> plates_of(const Frame& frame);
+/// Slabs and walls with their joints; `rest` is not yet known. Walls weigh this, kg, by number, or,
+/// if that is empty, as their solids. O(parts).
+std::vector<PlateSupport> plates_of(const Frame& frame, std::span<const double> wall_mass = {});
 
 /// Rest and shares by the joints that carry. A slab: as a rigid plate on three or four of them that
 /// are not in line, of a rectangle with all four a quarter each. A wall: on its lower beam, or the

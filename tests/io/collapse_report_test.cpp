@@ -37,6 +37,7 @@ CollapseResult sample_result() {
   r.steps = 1200, r.substeps = 1300, r.simulated_s = 5.25;
   r.step_ms_median = 0.5, r.step_ms_p95 = 1.5, r.step_ms_max = 2.5;
   r.bodies = 31, r.parts_freed = 32, r.broken_at_rest = 1;
+  r.buckles = {{0.625, "at a node"}};
   r.broken_joints = {{2, -0.25, 1.125, "strength", "linear", "My"},
                      {0, 0.5, 0, "hit", "ball", ""},
                      {1, 0.75, 1.0625, "buckling", "ec3", ""}};
@@ -92,7 +93,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
       {"joint": "beam@post_a", "time": 0.125, "utilisation": 1.25, "rotation": 0.03125}],
     "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0,
                   "unheld": 0},
-    "broken_at_rest": 1, "broken_bonds": 0, "max_utilisation": 4.75,
+    "broken_at_rest": 1, "buckles": [{"time": 0.625, "what": "at a node"}], "broken_bonds": 0, "max_utilisation": 4.75,
     "utilisation_at_rest": 0.375, "first_failure_load": 12500, "joint_gap": 0.0005,
     "sag": {"mean": 0.001, "max": 0.002, "node": "top_a", "end": 0.003},
     "reactions": {"weight": 840500, "error": 1e-6,

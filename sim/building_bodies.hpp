@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/collapse.hpp"
+#include "sim/frame_motion.hpp"
+#include "sim/rigid_world.hpp"
+
+namespace sunder {
+
+/// A building in the world of rigid bodies: what stands is a collider for every part, at its
+/// undeformed place; what has come loose is a body for every piece. Keeps references.
+class BuildingBodies {
+ public:
+  /// What hangs together and moves.
+  struct Piece {
+    BodyId body = kNoBody;  ///< kNoBody: it is no more
+    std::vector<std::uint32_t> parts;
+    double radius = 0;  ///< of the parts' centres about the piece's, m
+  };
+  BuildingBodies(const CollapseScene& scene, RigidWorld& world,
+                 const std::vector<PartSolid>& solids);
+
+  bool stands(std::uint32_t part) const { return piece_of_[part] == kStanding; }
+  bool is_gone(std::uint32_t part) const { return piece_of_[part] == kGone; }
+  bool is_loose(std::uint32_t part) const { return piece_of_[part] < pieces_.size(); }
+  std::uint32_t piece_of(std::uint32_t part) const { return piece_of_[part]; }  ///< of a loose one
+  std::span<const Piece> pieces() const { return pieces_; }  ///< those that are no more too
+  std::uint64_t piece_count() const { return piece_count_; }
+  BodyId body(std::uint32_t part) const;  ///< the collider or the piece's; kNoBody: gone
+  Pose pose(std::uint32_t part) const;    ///< of the part's own frame
+  /// kNoPart: the body is none of the building's.
+  std::uint32_t part_of(BodyId body, std::uint32_t prism) const;
+  std::vector<std::uint32_t> not_standing() const;  ///< parts, ascending
+
+  double mass_of(std::uint32_t part) const;  ///< with what was added, kg
+  /// Mass, centroid and inertia of parts where they stood.
+  BodyParams body_of(const std::vector<std::uint32_t>& parts) const;
+  /// Parts that stood move from now on.
+  void release(std::vector<std::uint32_t> parts, const BodyParams& body);
+  /// A piece falls into these groups of its parts, which go on with the motion it had.
+  void split(std::uint32_t piece, std::vector<std::vector<std::uint32_t>> groups);
+  void remove(std::uint32_t part);  ///< a piece of its own
+  /// A piece of its own goes to someone else, with its share of the baseline.
+  FrameMotion::Leaving hand_over(std::uint32_t part);
+  /// A part that stands has no collider any more; returns what it was.
+  BodyId give_up_shape(std::uint32_t part);
+  void take_shape(std::uint32_t part, BodyId body);  ///< a fixed body stands for the part
+  void set_mass(std::uint32_t part, double mass) { mass_[part] = mass; }  ///< of one that stands
+  void add_live(double more);  ///< pieces grow heavier, N/m² on slabs
+
+  double live() const { return live_; }          ///< added, N/m²
+  double baseline() const { return baseline_; }  ///< potential of the pieces where they started, J
+
+ private:
+  static constexpr std::uint32_t kStanding = 0xFFFFFFFEu, kGone = 0xFFFFFFFFu;
+  void add_collider(std::uint32_t part);
+  void add_piece(std::vector<std::uint32_t> parts, BodyParams body);
+  void drop(std::uint32_t piece);
+
+  const CollapseScene& scene_;
+  const Frame& frame_;
+  RigidWorld& world_;
+  const std::vector<PartSolid>& solids_;
+  std::vector<std::uint32_t> piece_of_;                    ///< by part
+  std::vector<BodyId> collider_of_;                        ///< by part
+  std::vector<double> mass_;                               ///< by part, kg
+  std::vector<std::vector<std::uint32_t>> parts_of_body_;  ///< by BodyId: prism → part
+  std::vector<Piece> pieces_;
+  std::uint64_t piece_count_ = 0, serial_ = 0;
+  double live_ = 0, baseline_ = 0;
+};
+
+}  // namespace sunder

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What touches a building's parts, and how much of a blow its frame can take.
+#include "sim/elastic_motion.hpp"
+
+namespace sunder {
+
+void ElasticMotion::note_contacts() {
+  for (const Contact& contact : world_.contacts()) {
+    const Vec3 on_a = contact.impulse * contact.normal + contact.tangential;
+    if (const std::uint32_t part = part_of(contact.a, contact.part_a); part != kNoPart)
+      touch(contact, part, on_a);
+    if (const std::uint32_t part = part_of(contact.b, contact.part_b); part != kNoPart)
+      touch(contact, part, -1.0 * on_a);
+  }
+}
+
+/// Point and impulse are turned back to where the part stood.
+void ElasticMotion::touch(const Contact& contact, std::uint32_t part, Vec3 impulse) {
+  Vec3 point = contact.point;
+  if (bodies_.is_loose(part)) {
+    const Pose back = inverse(world_.pose(bodies_.body(part)));
+    point = back * point;
+    impulse = rotate(back.rotation, impulse);
+  }
+  touches_.add(part, point, impulse, contact.approach);
+}
+
+/// Forces on what stands.
+void ElasticMotion::press() {
+  std::vector<FrameLoads::OnPart> contacts;
+  for (const std::uint32_t part : touches_.active())
+    if (!bodies_.is_loose(part)) contacts.push_back(touches_.load_on(part));
+  standing_.set_contacts(std::move(contacts));
+}
+
+/// Of the place that is touched, along the force, beyond the speed of what struck it.
+double ElasticMotion::speed_ahead(std::uint32_t part) const {
+  const FrameTouch& touch = touches_[part];
+  const double fall = scene_.simulation.gravity * scene_.rules.load_time;
+  const Vec3 along = (1 / length(touch.force)) * touch.force;
+  return dot(velocity_at(part, touch.point), along) - touch.approach - fall;
+}
+
+/// The world takes what stands for fixed, so that light parts would get more speed than what struck
+/// them had: a step in which they would is solved again with as much force as they can take.
+void ElasticMotion::limit_blows() {
+  if (!standing_.can_step_again()) return;
+  std::vector<std::pair<std::uint32_t, double>> ahead;
+  for (const std::uint32_t part : touches_.active()) {
+    if (!bodies_.stands(part)) continue;
+    const double speed = speed_ahead(part);
+    if (speed > 0) ahead.emplace_back(part, speed);
+  }
+  if (ahead.empty()) return;
+  standing_.swap_velocities();
+  for (auto& [part, speed] : ahead) {
+    const double before = speed_ahead(part);
+    speed = before < 0 ? before / (before - speed) : 0;
+  }
+  standing_.swap_velocities();
+  for (const auto& [part, share] : ahead) touches_.limit(part, share);
+  press();
+  standing_.solve_step();
+}
+
+Vec3 ElasticMotion::give_back(std::uint32_t part, double share) {
+  if (!bodies_.stands(part)) return {};
+  touches_.limit(part, share);
+  press();
+  if (standing_.can_step_again()) standing_.step_again();
+  const Vec3 back = touches_.end(part);
+  press();
+  if (standing_.in_time()) standing_.stand_on();
+  return back;
+}
+
+}  // namespace sunder

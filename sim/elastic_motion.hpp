@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of the solver "hybrid" share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fracture/support_graph.hpp"
+#include "sim/building_bodies.hpp"
+#include "sim/frame_motion.hpp"
+#include "sim/frame_touches.hpp"
+#include "sim/inner_forces.hpp"
+#include "sim/part_links.hpp"
+#include "sim/standing_frame.hpp"
+
+namespace sunder {
+
+/// A building as what it is: pieces that hang together, elastic inside. The piece on the ground
+/// stands still in the world and rings, when something happens to it, in the frame solver alone
+/// (StandingFrame). What comes loose is one rigid body each (BuildingBodies), whose inner forces
+/// follow from its contacts by inertia relief (InnerForces).
+class ElasticMotion final : public FrameMotion {
+ public:
+  ElasticMotion(const CollapseScene& scene, RigidWorld& world,
+                const std::vector<PartSolid>& solids);
+  void settle(const Progress& progress) override;
+  void follow(double now, double dt, bool ends_step) override;
+  JointLoad load(std::uint32_t joint) const override;
+  bool is_live(std::uint32_t joint) const override;
+  bool any_live() const override { return standing_.is_live() || inner_.any_live(); }
+  bool any_moving() const override { return bodies_.piece_count() > 0; }
+  void break_joint(std::uint32_t joint, bool bears_on) override;
+  HingeState hinge(std::uint32_t joint) const override;
+  bool yield(std::uint32_t joint, Vec3 moment) override;
+  bool redistributes() const override { return true; }
+  bool settle_breaks() override;
+  std::vector<std::uint32_t> unheld_joints() const override;
+  double borne(std::uint32_t part) const override { return touches_[part].borne; }
+  Vec3 give_back(std::uint32_t part, double share) override;
+  void rejoin(std::span<const std::uint32_t> joints) override;
+  void remove_part(std::uint32_t part) override;
+  void add_load(double more) override;
+  bool stands(std::uint32_t part) const override { return bodies_.stands(part); }
+  BodyId give_up_shape(std::uint32_t part) override;
+  void take_shape(std::uint32_t part, BodyId body) override { bodies_.take_shape(part, body); }
+  void set_mass(std::uint32_t part, double mass) override;
+  Leaving release(std::uint32_t part) override { return bodies_.hand_over(part); }
+  Pose pose(std::uint32_t part) const override { return bodies_.pose(part); }
+  bool is_moving(std::uint32_t part) const override;
+  std::uint32_t part_of(BodyId body, std::uint32_t prism) const override {
+    return bodies_.part_of(body, prism);
+  }
+  double sag(std::uint32_t member) const override;
+  std::vector<SupportReaction> supports() const override { return supports_; }
+  double unsupported() const override;
+  double joint_gap(std::uint32_t) const override { return 0; }
+  std::uint64_t bodies() const override { return bodies_.piece_count(); }
+  double kinetic() const override { return standing_.kinetic(); }
+  double strain() const override { return standing_.strain(); }
+  double potential() const override { return standing_.potential(); }
+  double baseline() const override { return bodies_.baseline(); }
+  MotionLosses losses() const override;
+  double given() const override { return given_ + standing_.given(); }
+  SolveCounts solves() const override;
+  double residual() const override;
+  std::optional<Buckling> buckling() const override { return standing_.buckling(); }
+
+ private:
+  // elastic_motion.cpp
+  double energy() const;  ///< of frame and bodies, J
+  void part_bodies();
+  bool settle_hinges();
+  void stop_turning(std::span<const std::uint32_t> joints);
+  std::vector<std::uint32_t> release_loose();
+
+  // elastic_contacts.cpp: what touches the parts.
+  void note_contacts();
+  void touch(const Contact& contact, std::uint32_t part, Vec3 impulse);
+  double speed_ahead(std::uint32_t part) const;
+  void limit_blows();
+  void press();
+
+  // elastic_release.cpp: how parts of a ringing frame move.
+  std::vector<std::uint32_t> nodes_of(std::uint32_t part) const;
+  Vec3 velocity_of_end(std::uint32_t part, std::uint32_t node) const;
+  Vec3 velocity_at(std::uint32_t part, Vec3 point) const;
+  void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
+
+  const CollapseScene& scene_;
+  const Frame& frame_;
+  RigidWorld& world_;
+  const std::vector<PartSolid>& solids_;
+  SupportGraph graph_;
+  PartLinks links_;
+  BuildingBodies bodies_;
+  FrameTouches touches_;
+  StandingFrame standing_;
+  InnerForces inner_;
+  std::vector<std::uint32_t> broken_;                ///< since breaks were settled
+  std::vector<std::array<std::uint32_t, 2>> apart_;  ///< parts that bear on each other no more
+  std::vector<StandingFrame::Hinge> yielding_;       ///< since breaks were settled
+  std::vector<SupportReaction> supports_;
+  double since_step_ = 0, given_ = 0, fracture_ = 0;
+  std::uint64_t skipped_ = 0;
+};
+
+}  // namespace sunder

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/frame_touches.hpp"
+
+#include <algorithm>
+
+namespace sunder {
+namespace {
+
+constexpr double kNoForce = 1;  // N: contacts below it are over
+
+}  // namespace
+
+void FrameTouches::add(std::uint32_t part, Vec3 point, Vec3 impulse, double approach) {
+  FrameTouch& touch = of_[part];
+  const double size = length(impulse);
+  touch.impulse = touch.impulse + impulse;
+  touch.size += size;
+  touch.weighted = touch.weighted + size * point;
+  touch.approach = std::max(touch.approach, approach);
+  if (listed_[part] == 0) list_.push_back(part);
+  listed_[part] = 1;
+}
+
+std::vector<std::uint32_t> FrameTouches::end_step(double dt, double load_time, double max_error) {
+  const double share = dt / (dt + load_time);
+  std::vector<std::uint32_t> changed;
+  std::ranges::sort(list_);
+  for (const std::uint32_t part : list_) {
+    FrameTouch& touch = of_[part];
+    if (!touch.is_active && touch.size == 0) continue;
+    if (touch.size > 0) touch.point = (1 / touch.size) * touch.weighted;
+    touch.owed = touch.owed + touch.impulse - (last_dt_ / 2) * (touch.before + touch.force);
+    touch.before = touch.force;
+    const Vec3 force = touch.force + share * ((1 / dt) * touch.impulse - touch.force);
+    const double change = length(force - touch.force);
+    if (change > max_error * std::max(length(touch.force), kNoForce)) changed.push_back(part);
+    touch.force = force;
+    touch.borne = 1;
+    touch.is_active = length(force) > kNoForce;
+    if (!touch.is_active) touch.approach = 0, touch.owed = {};
+    touch.impulse = touch.weighted = {};
+    touch.size = 0;
+  }
+  last_dt_ = dt;
+  std::erase_if(list_, [&](std::uint32_t part) {
+    if (of_[part].is_active) return false;
+    listed_[part] = 0;
+    return true;
+  });
+  list_active();
+  return changed;
+}
+
+void FrameTouches::list_active() {
+  active_.clear();
+  for (const std::uint32_t part : list_)
+    if (of_[part].is_active) active_.push_back(part);
+  std::ranges::sort(active_);
+}
+
+void FrameTouches::limit(std::uint32_t part, double share) {
+  FrameTouch& touch = of_[part];
+  touch.force = share * touch.force;
+  touch.borne = share;
+  touch.is_active = length(touch.force) > kNoForce;
+  list_active();
+}
+
+Vec3 FrameTouches::end(std::uint32_t part) {
+  const FrameTouch& touch = of_[part];
+  const Vec3 back = touch.owed - (last_dt_ / 2) * (touch.before + touch.force);
+  forget(part);
+  return back;
+}
+
+void FrameTouches::forget(std::uint32_t part) {
+  of_[part] = {};
+  if (listed_[part] == 0) return;
+  listed_[part] = 0;
+  std::erase(list_, part);
+  std::erase(active_, part);
+}
+
+}  // namespace sunder

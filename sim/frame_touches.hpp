@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/frame_solver.hpp"
+
+namespace sunder {
+
+/// Force of what touches a part, and where; the part's own undeformed place.
+struct FrameTouch {
+  Vec3 impulse;         ///< since the last step ended
+  double size = 0;      ///< sum of the impulses' sizes
+  Vec3 weighted;        ///< their places, by size
+  Vec3 force, point;    ///< mean over the load time
+  double approach = 0;  ///< of what struck it, fastest since it is active, m/s
+  Vec3 before;          ///< the force at the end of the step before
+  Vec3 owed;            ///< impulse that was taken and is not yet passed on, before the last step
+  double borne = 1;     ///< share of the blow that the frame could take
+  bool is_active = false;
+};
+
+/// What touches a building's parts. Forces follow the impulses by a first-order lag. Costs depend
+/// on the parts that are touched alone.
+class FrameTouches {
+ public:
+  explicit FrameTouches(std::uint32_t parts) : of_(parts), listed_(parts, 0) {}
+
+  void add(std::uint32_t part, Vec3 point, Vec3 impulse, double approach);
+  /// A step ends: forces. Parts whose force changed by more than `max_error` of itself, ascending.
+  std::vector<std::uint32_t> end_step(double dt, double load_time, double max_error);
+  const FrameTouch& operator[](std::uint32_t part) const { return of_[part]; }
+  /// Parts that forces are on, ascending.
+  std::span<const std::uint32_t> active() const { return active_; }
+  FrameLoads::OnPart load_on(std::uint32_t part) const {
+    return {part, of_[part].point, of_[part].force};
+  }
+
+  /// Of what struck the part in the last step it took but this share.
+  void limit(std::uint32_t part, double share);
+  /// Nothing touches it any more. Returns the impulse that was not passed on.
+  Vec3 end(std::uint32_t part);
+  void forget(std::uint32_t part);
+
+ private:
+  void list_active();
+
+  std::vector<FrameTouch> of_;                ///< by part
+  std::vector<std::uint8_t> listed_;          ///< by part
+  std::vector<std::uint32_t> list_, active_;  ///< parts with a force or an impulse; with a force
+  double last_dt_ = 0;
+};
+
+}  // namespace sunder

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The standing frame: loads, what it has lost, its solvers, energy. In time: standing_motion.cpp.
+#include "sim/standing_frame.hpp"
+
+#include <algorithm>
+
+#include "meshing/error.hpp"
+
+namespace sunder {
+namespace {
+
+FrameSolverParams static_params(const CollapseScene& scene) {
+  FrameSolverParams params;
+  params.p_delta = scene.simulation.p_delta;
+  params.slabs = scene.simulation.diaphragms ? "diaphragm" : "load";
+  return params;
+}
+
+/// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
+FrameSolverParams dynamic_params(const CollapseScene& scene) {
+  FrameSolverParams params = static_params(scene);
+  params.p_delta = false;
+  const double dt = scene.simulation.step;
+  params.stiffness = 1 + 2 / dt * scene.simulation.damping_stiffness;
+  params.mass = 4 / (dt * dt) + 2 / dt * scene.simulation.damping_mass;
+  return params;
+}
+
+}  // namespace
+
+StandingFrame::StandingFrame(const CollapseScene& scene) : scene_(scene), frame_(scene.frame) {}
+
+void StandingFrame::settle(const Progress&) {
+  static_.frame = std::make_unique<FrameSolver>(frame_, static_params(scene_));
+  solve_static();
+  is_settled_ = true;
+  if (!may_ring()) return;
+  ahead_ = std::async(std::launch::async, [&scene = scene_, &like = *static_.frame] {
+    return std::make_unique<FrameSolver>(scene.frame, dynamic_params(scene), like);
+  });
+}
+
+/// Later than at time 0: when parts are removed joints pass to others, and it is needed at once.
+bool StandingFrame::may_ring() const {
+  const Scenario& scenario = scene_.scenario;
+  if (scene_.simulation.quasi_static || !scenario.remove.empty()) return false;
+  return !scene_.projectiles.empty() || scenario.load_rate > 0 ||
+         !scenario.ground_motion.times.empty();
+}
+
+std::vector<SupportReaction> StandingFrame::supports() const {
+  std::vector<SupportReaction> supports;
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
+    if (frame_.joints[j].b != kNoPart) continue;
+    supports.push_back({frame_.joints[j].node, in_use().reaction(j), in_use().reaction_moment(j)});
+  }
+  return supports;
+}
+
+// ---- loads
+// ---------------------------------------------------------------------------------------
+
+Vec3 StandingFrame::gravity() const {
+  const Vec3 weight{0, -scene_.simulation.gravity, 0};
+  const GroundMotion& motion = scene_.scenario.ground_motion;
+  return motion.times.empty() || now_ <= 0 ? weight : weight - motion.at(now_);
+}
+
+FrameLoads StandingFrame::loads() const {
+  FrameLoads result;
+  result.gravity = gravity();
+  if (live_ > 0) result.live.assign(frame_.slabs.size(), live_);
+  result.contacts = contacts_;
+  return result;
+}
+
+/// The contacts of all loads.
+FrameLoads StandingFrame::touching() const {
+  FrameLoads contacts;
+  contacts.gravity = {};
+  contacts.contacts = contacts_;
+  return contacts;
+}
+
+/// What the loads have beyond contacts and weight.
+FrameLoads StandingFrame::shaking() const {
+  FrameLoads motion = loads();
+  motion.contacts.clear();
+  motion.gravity = gravity() + Vec3{0, scene_.simulation.gravity, 0};
+  return motion;
+}
+
+void StandingFrame::set_contacts(std::vector<FrameLoads::OnPart> contacts) {
+  contacts_ = std::move(contacts);
+}
+
+void StandingFrame::add_live(double more) {
+  live_ += more;
+  if (in_time()) {
+    stand_on();
+    follow_hinges();
+  }
+}
+
+// ---- solvers
+// -------------------------------------------------------------------------------------
+
+void StandingFrame::bring_up_to_date(Solver& solver) const {
+  const std::span<const std::uint32_t> joints(broken_), parts(gone_);
+  if (solver.joints < joints.size()) solver.frame->break_joints(joints.subspan(solver.joints));
+  if (solver.parts < parts.size()) solver.frame->remove_parts(parts.subspan(solver.parts));
+  for (std::size_t i = solver.masses; i < masses_.size(); ++i)
+    solver.frame->set_plate_mass(masses_[i].first, masses_[i].second);
+  solver.masses = masses_.size();
+  solver.joints = joints.size();
+  solver.parts = parts.size();
+}
+
+/// With the hinges that are left to it. Second order has no state where the frame buckles: after
+/// time 0 it goes on in first order.
+void StandingFrame::solve_static() {
+  try {
+    bring_up_to_date(static_);
+    if (has_rung_ && !hinges_.empty()) static_.frame->set_hinges(hinges_);
+    static_.frame->solve(loads());
+  } catch (const Error& error) {
+    if (!is_settled_ || is_first_order_ || !scene_.simulation.p_delta) throw;
+    go_first_order(error.what());
+  }
+  residual_ = std::max(residual_, static_.frame->residual());
+  is_live_ = true;
+}
+
+void StandingFrame::go_first_order(const char* why) {
+  buckling_ = {now_, why};
+  is_first_order_ = true;
+  const std::vector<Hinge> hinges = has_rung_ ? hinges_ : static_.frame->hinges();
+  FrameSolverParams params = static_params(scene_);
+  params.p_delta = false;
+  if (ahead_.valid()) ahead_.wait();
+  static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
+  bring_up_to_date(static_);
+  static_.frame->set_hinges(hinges);
+  static_.frame->solve(loads());
+}
+
+/// Under other loads; in balance at any time, what they leave over counts as damping.
+void StandingFrame::balance() {
+  const double before = energy();
+  solve_static();
+  losses_.damping += before - energy();
+}
+
+void StandingFrame::make_dynamic() {
+  if (ahead_.valid()) {
+    dynamic_ = {ahead_.get()};
+  } else {
+    dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(scene_), *static_.frame)};
+  }
+  bring_up_to_date(dynamic_);
+  dynamic_.frame->set_hinges(static_.frame->hinges());
+  v_.assign(dynamic_.frame->freedoms(), 0);
+  for (std::vector<double>* each : {&f_, &way_, &f_next_, &springs_, &scratch_, &momentum_})
+    each->resize(v_.size());
+}
+
+void StandingFrame::take_out(std::span<const std::uint32_t> joints,
+                             std::span<const std::uint32_t> parts) {
+  broken_.insert(broken_.end(), joints.begin(), joints.end());
+  gone_.insert(gone_.end(), parts.begin(), parts.end());
+  if (in_time()) bring_up_to_date(dynamic_);
+}
+
+void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
+  masses_.emplace_back(part, mass);
+  if (in_time()) bring_up_to_date(dynamic_);
+}
+
+void StandingFrame::carry_on() {
+  if (in_time()) {
+    stand_on();
+  } else {
+    solve_static();
+  }
+  hinges_ = in_use().hinges();
+  is_live_ = true;
+}
+
+/// Happens at time 0.
+void StandingFrame::rejoin() {
+  const std::vector<Hinge> hinges = stiff_hinges();
+  const Solver old = std::move(dynamic_);
+  const std::vector<double> u = u_, v = v_;
+  const bool rang = in_time();
+  rings_ = has_rung_ = false;
+  FrameSolverParams params = static_params(scene_);
+  params.p_delta &= !is_first_order_;
+  static_ = {std::make_unique<FrameSolver>(frame_, params)};
+  bring_up_to_date(static_);
+  static_.frame->set_hinges(hinges);
+  hinges_ = static_.frame->hinges();
+  solve_static();
+  if (rang) take_state(*old.frame, u, v);
+}
+
+/// Of a solver of the same nodes in another order.
+void StandingFrame::take_state(const FrameSolver& old, const std::vector<double>& u,
+                               const std::vector<double>& v) {
+  wake();
+  for (std::uint32_t node = 0; node < frame_.nodes.size(); ++node) {
+    const std::size_t from = old.freedom(node), to = dynamic_.frame->freedom(node);
+    if (from == FrameSolver::kHeld || to == FrameSolver::kHeld) continue;
+    std::copy_n(u.data() + from, 6, u_.data() + to);
+    std::copy_n(v.data() + from, 6, v_.data() + to);
+  }
+  stand_on();
+}
+
+// ---- energy
+// --------------------------------------------------------------------------------------
+
+double StandingFrame::kinetic() const {
+  if (!in_time()) return 0;
+  find_momentum();
+  double twice = 0;
+  for (std::size_t i = 0; i < v_.size(); ++i) twice += v_[i] * momentum_[i];
+  return twice / 2;
+}
+
+double StandingFrame::strain() const {
+  return ledger().strain_energy();
+}
+
+double StandingFrame::potential() const {
+  FrameLoads own;
+  own.gravity = {0, -scene_.simulation.gravity, 0};
+  if (live_ > 0) own.live.assign(frame_.slabs.size(), live_);
+  FrameSolver& solver = ledger();
+  const double work = solver.work_of(own);
+  const std::vector<double> u(solver.displacements().begin(), solver.displacements().end());
+  solver.set_displacements(u, loads());  // its loads again
+  return -work;
+}
+
+double StandingFrame::energy() const {
+  return kinetic() + strain() + potential();
+}
+
+SolveCounts StandingFrame::solves() const {
+  SolveCounts counts;
+  for (const Solver* solver : {&static_, &dynamic_}) {
+    if (!solver->frame) continue;
+    const FactorCounts own = solver->frame->counts();
+    counts.full += own.full;
+    counts.update += own.partial + own.low_rank;
+  }
+  return counts;
+}
+
+}  // namespace sunder

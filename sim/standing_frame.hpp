@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/collapse.hpp"
+#include "sim/frame_motion.hpp"
+#include "sim/frame_solver.hpp"
+
+namespace sunder {
+
+/// What stands of a building: at rest in one frame solver; in time, when something happens to it,
+/// in another one, by the trapezoidal rule (Newmark's method with 1/4, 1/2, here without
+/// accelerations, so that it starts right after a break). Only the solver in use is kept up to
+/// date; the other one follows when it is needed. Keeps a reference to the scene.
+class StandingFrame {
+ public:
+  using Hinge = FrameSolver::Hinge;
+  explicit StandingFrame(const CollapseScene& scene);
+
+  /// The elastic state under the weight; nothing moves. Throws Error{input} as FrameSolver does.
+  /// If anything of the scene can disturb it, the factor of what rings is begun in a thread of its
+  /// own, and waited for when it is needed first.
+  void settle(const Progress& progress);
+  std::vector<SupportReaction> supports() const;
+
+  // Loads, for the next step or carry_on().
+  void set_time(double now) { now_ = now; }
+  void set_contacts(std::vector<FrameLoads::OnPart> contacts);
+  void add_live(double more);  ///< N/m² on all slabs; energy that it brings is not booked
+
+  // Time.
+  bool rings() const { return rings_; }
+  bool in_time() const { return rings_ && !scene_.simulation.quasi_static; }
+  void wake();  ///< starts from the state at rest
+  /// Velocities at the end of the step; with other contacts solve_step() changes them.
+  void begin_step();
+  void solve_step();
+  void end_step();
+  /// The last step can be done again with other contacts, from where it began.
+  bool can_step_again() const { return can_step_again_; }
+  void step_again();
+  /// In a step: velocities when it began take the place of those now, and back.
+  void swap_velocities() { std::swap(v_, v_before_); }
+  void follow_hinges();  ///< after a step; one that would turn back is stiff, as it was before
+  void fall_quiet(double dt);
+
+  // Changes of what there is. Then carry_on(), or in time the displacements are not continued.
+  /// Joints break and parts leave, with all their joints.
+  void take_out(std::span<const std::uint32_t> joints, std::span<const std::uint32_t> parts);
+  void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
+  void stop_turning(std::uint32_t node);
+  void carry_on();  ///< in time displacements are continuous, else there is a new balance
+  void stand_on();  ///< in time: forces follow the displacements and contacts anew
+  /// The frame's joints have other parts: solvers are made anew, the state is the same.
+  void rejoin();
+  std::vector<std::uint32_t> loose_parts() const { return in_use().loose_parts(); }
+
+  // Plastic hinges. In time they turn; at rest they are held as they are left.
+  const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
+  bool can_bend(std::uint32_t joint) const { return in_use().can_bend(joint); }
+  void set_hinges(const std::vector<Hinge>& hinges);
+
+  JointLoad load(std::uint32_t joint) const { return in_use().joint_load(joint); }
+  bool is_live() const { return is_live_; }  ///< loads have changed since forget_changes()
+  void forget_changes() { is_live_ = can_step_again_ = false; }
+  Vec3 displacement(std::uint32_t node) const { return in_use().displacement(node); }
+  /// Velocity and angular velocity of a node; in time.
+  struct Motion {
+    Vec3 velocity, spin;
+  };
+  Motion motion(std::uint32_t node) const;
+
+  double kinetic() const;    ///< J
+  double strain() const;     ///< J
+  double potential() const;  ///< of the weight on the displacements, J
+  double energy() const;     ///< all three
+  /// Damping, plastic work and what contacts booked; settled by whoever breaks joints: fracture.
+  const MotionLosses& losses() const { return losses_; }
+  double given() const { return given_; }  ///< by the ground's motion, J
+  SolveCounts solves() const;
+  double residual() const { return residual_; }  ///< largest so far, relative
+  const std::optional<Buckling>& buckling() const { return buckling_; }
+
+ private:
+  /// A solver and how much of what was taken out it knows.
+  struct Solver {
+    std::unique_ptr<FrameSolver> frame;
+    std::size_t joints = 0, parts = 0, masses = 0;
+  };
+  /// Before a step that may have to be done again.
+  struct Moment {
+    std::vector<double> u, v, f;
+    FrameLoads pushed, shaken;
+    MotionLosses losses;
+    double given = 0;
+  };
+  FrameSolver& in_use() const { return in_time() ? *dynamic_.frame : *static_.frame; }
+  /// Books are kept in the dynamic solver from the first time that the frame rings.
+  FrameSolver& ledger() const { return has_rung_ ? *dynamic_.frame : *static_.frame; }
+  FrameLoads loads() const;
+  FrameLoads touching() const;
+  FrameLoads shaking() const;
+  Vec3 gravity() const;
+  void bring_up_to_date(Solver& solver) const;
+  void solve_static();
+  void go_first_order(const char* why);
+  void balance();
+  bool may_ring() const;
+  void make_dynamic();
+  void move_on();
+  void find_momentum() const;
+  void account_for_damping();
+  void take_state(const FrameSolver& old, const std::vector<double>& u,
+                  const std::vector<double>& v);
+  std::vector<Hinge> stiff_hinges() const;
+  bool turn_endlessly(const std::vector<Hinge>& hinges) const;
+  void hold_hinges(std::vector<Hinge> hinges);
+
+  const CollapseScene& scene_;
+  const Frame& frame_;
+  Solver static_, dynamic_;
+  std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
+  std::vector<std::uint32_t> broken_, gone_;         ///< all that was taken out
+  std::vector<std::pair<std::uint32_t, double>> masses_;  ///< of plates, as they changed
+  std::vector<FrameLoads::OnPart> contacts_;
+  // When it rings; in a step its way, the loads at its end, and what was when it began.
+  std::vector<double> u_, v_, f_, way_, f_next_, v_before_, springs_, scratch_;
+  mutable std::vector<double> momentum_;  ///< M v_, if it is known
+  mutable bool is_momentum_known_ = false;
+  std::vector<Hinge> hinges_;   ///< by joint
+  FrameLoads pushed_, shaken_;  ///< contacts and motion of the ground at the last loads
+  Moment before_step_;
+  bool rings_ = false, has_rung_ = false, is_live_ = false, can_step_again_ = false;
+  bool is_settled_ = false, is_first_order_ = false;
+  double live_ = 0, now_ = 0, quiet_for_ = 0;
+  MotionLosses losses_;
+  double given_ = 0, residual_ = 0;
+  std::optional<Buckling> buckling_;
+};
+
+}  // namespace sunder

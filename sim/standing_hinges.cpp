@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plastic hinges of the standing frame. In time they turn in the dynamic solver; the static one
+// holds them as they are left.
+#include <algorithm>
+#include <cassert>
+
+#include "sim/standing_frame.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr double kTurnsBack = 1e-12;  // rad in a step
+constexpr double kEndless = 3.2;      // rad: above all capacities
+
+}  // namespace
+
+std::vector<StandingFrame::Hinge> StandingFrame::stiff_hinges() const {
+  std::vector<Hinge> hinges = in_use().hinges();
+  for (Hinge& hinge : hinges) hinge.flows = false;
+  return hinges;
+}
+
+const StandingFrame::Hinge* StandingFrame::hinge(std::uint32_t j) const {
+  const auto found = std::ranges::lower_bound(hinges_, j, {}, &Hinge::joint);
+  return found == hinges_.end() || found->joint != j ? nullptr : &*found;
+}
+
+/// Displacements go on; what the hinges take up in turning is lost.
+void StandingFrame::set_hinges(const std::vector<Hinge>& hinges) {
+  const double before = energy();
+  in_use().set_hinges(hinges);
+  if (in_time()) {
+    stand_on();
+  } else {
+    solve_static();
+  }
+  const std::vector<Hinge> turned = in_use().hinges();
+  if (!in_time() && turn_endlessly(turned)) {
+    hold_hinges(hinges);
+  } else {
+    hinges_ = turned;
+  }
+  losses_.plastic += before - energy();
+  is_live_ = true;
+}
+
+/// At rest: hinges make the frame a mechanism.
+bool StandingFrame::turn_endlessly(const std::vector<Hinge>& hinges) const {
+  return !static_.frame->mechanisms().empty() ||
+         std::ranges::any_of(hinges, [](const Hinge& hinge) {
+           return hinge.flows && length(hinge.rotation) > kEndless;
+         });
+}
+
+/// At rest there is no state with these hinges: it stays as it was, but they count as turned too
+/// far.
+void StandingFrame::hold_hinges(std::vector<Hinge> hinges) {
+  for (Hinge& hinge : hinges) {
+    const Hinge* was = this->hinge(hinge.joint);
+    hinge.rotation = was == nullptr ? Vec3{} : was->rotation;
+    hinge.flows = false;
+  }
+  static_.frame->set_hinges(hinges);
+  solve_static();
+  hinges_ = static_.frame->hinges();
+  for (const Hinge& hinge : hinges) {
+    const auto is = std::ranges::find(hinges_, hinge.joint, &Hinge::joint);
+    is->flows = true;
+    is->rotation = {0, kEndless, 0};
+  }
+}
+
+void StandingFrame::follow_hinges() {
+  if (hinges_.empty()) return;
+  const std::vector<Hinge> now = in_use().hinges();
+  assert(now.size() == hinges_.size() && "hinges come and go when breaks are settled");
+  std::vector<Hinge> stiff;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (!now[i].flows) continue;
+    const double work = dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+    losses_.plastic += work;
+    if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
+    if (work >= -kTurnsBack * length(now[i].moment)) continue;
+    stiff.push_back(hinges_[i]);
+    stiff.back().flows = false;
+  }
+  hinges_ = now;
+  if (!stiff.empty()) set_hinges(stiff);
+}
+
+}  // namespace sunder

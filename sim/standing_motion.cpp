@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The standing frame in time.
+#include <algorithm>
+#include <utility>
+
+#include "sim/standing_frame.hpp"
+
+namespace sunder {
+namespace {
+
+/// A frame rings no more when its kinetic energy stays below this share of the strain energy.
+constexpr double kQuietShare = 1e-10;
+constexpr double kQuietAfter = 0.25;  // s
+
+double product_of(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+void StandingFrame::wake() {
+  quiet_for_ = 0;
+  const bool rang = std::exchange(rings_, true);
+  if (rang || scene_.simulation.quasi_static) return;
+  if (!dynamic_.frame) make_dynamic();
+  bring_up_to_date(dynamic_);
+  has_rung_ = true;
+  const std::span<const double> rest = static_.frame->displacements();
+  u_.assign(rest.begin(), rest.end());
+  std::ranges::fill(v_, 0.0);
+  stand_on();
+}
+
+/// The momentum M v and the elastic forces K u at the beginning, and what the loads do until then.
+void StandingFrame::begin_step() {
+  if (!in_time()) return;
+  can_step_again_ = hinges_.empty() && !contacts_.empty();
+  if (can_step_again_ && !scene_.projectiles.empty())
+    before_step_ = {u_, v_, f_, pushed_, shaken_, losses_, given_};
+  find_momentum();
+  dynamic_.frame->stiffness_times(u_, springs_);
+  v_before_ = v_;
+  solve_step();
+}
+
+/// K* w = f₀ + f₁ − 2 K u₀ + (4/dt) M v₀, u₁ = u₀ + w, v₁ = (2/dt) w − v₀ with the loads at both
+/// ends: the trapezoidal rule on M v' = f − K u − C v, u' = v. Damping is in K* alone.
+void StandingFrame::solve_step() {
+  const double dt = scene_.simulation.step;
+  dynamic_.frame->load_vector(loads(), f_next_);
+  for (std::size_t i = 0; i < f_.size(); ++i)
+    scratch_[i] = f_[i] + f_next_[i] - 2 * springs_[i] + 4 / dt * momentum_[i];
+  dynamic_.frame->solve_system(scratch_, way_);
+  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] = 2 / dt * way_[i] - v_before_[i];
+}
+
+void StandingFrame::end_step() {
+  is_live_ = true;
+  if (!in_time()) {
+    balance();
+    return;
+  }
+  for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += way_[i];
+  std::swap(f_, f_next_);
+  move_on();
+  account_for_damping();
+}
+
+void StandingFrame::step_again() {
+  u_ = before_step_.u;
+  v_ = before_step_.v;
+  is_momentum_known_ = false;
+  f_ = before_step_.f;
+  pushed_ = before_step_.pushed;
+  shaken_ = before_step_.shaken;
+  losses_ = before_step_.losses;
+  given_ = before_step_.given;
+  dynamic_.frame->set_displacements(u_, loads());
+  begin_step();
+  end_step();
+}
+
+/// To u_. Contacts and the ground's own motion give the frame the mean of their forces at both ends
+/// of the step times the way.
+void StandingFrame::move_on() {
+  const FrameLoads now = loads(), pushes = touching(), shakes = shaking();
+  const bool touched = !pushed_.contacts.empty() || !pushes.contacts.empty();
+  const bool shaken = !scene_.scenario.ground_motion.times.empty();
+  FrameSolver& solver = *dynamic_.frame;
+  const auto work = [&] {
+    return std::pair{touched ? solver.work_of(pushed_) + solver.work_of(pushes) : 0,
+                     shaken ? solver.work_of(shaken_) + solver.work_of(shakes) : 0};
+  };
+  const auto [contact_before, ground_before] = work();
+  solver.set_displacements(u_, now);
+  const auto [contact_after, ground_after] = work();
+  losses_.contact -= (contact_after - contact_before) / 2;
+  given_ += (ground_after - ground_before) / 2;
+  if (touched || shaken) solver.set_displacements(u_, now);  // its loads again
+  pushed_ = pushes;
+  shaken_ = shakes;
+}
+
+void StandingFrame::find_momentum() const {
+  if (!is_momentum_known_) dynamic_.frame->mass_times(v_, momentum_);
+  is_momentum_known_ = true;
+}
+
+/// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt.
+void StandingFrame::account_for_damping() {
+  const double dt = scene_.simulation.step;
+  const double by_mass = scene_.simulation.damping_mass / 2;  // M w = dt (M v₀ + M v₁)/2
+  losses_.damping += by_mass * product_of(way_, momentum_);
+  is_momentum_known_ = false;
+  find_momentum();
+  losses_.damping += by_mass * product_of(way_, momentum_);
+  dynamic_.frame->stiffness_times(u_, scratch_);  // K w = K u₁ − K u₀
+  losses_.damping += scene_.simulation.damping_stiffness / dt *
+                     (product_of(way_, scratch_) - product_of(way_, springs_));
+}
+
+void StandingFrame::fall_quiet(double dt) {
+  if (!scene_.simulation.sleep || !scene_.scenario.ground_motion.times.empty()) return;
+  const bool is_quiet = !in_time() || kinetic() <= kQuietShare * dynamic_.frame->strain_energy();
+  quiet_for_ = is_quiet ? quiet_for_ + dt : 0;
+  if (quiet_for_ < kQuietAfter) return;
+  const double before = energy();
+  if (in_time() && !hinges_.empty()) {
+    hinges_ = stiff_hinges();
+    dynamic_.frame->set_hinges(hinges_);
+  }
+  rings_ = false;
+  solve_static();
+  if (has_rung_) dynamic_.frame->set_displacements(static_.frame->displacements(), loads());
+  losses_.damping += before - energy();
+}
+
+/// The ringing frame's forces follow its displacements anew.
+void StandingFrame::stand_on() {
+  const FrameLoads now = loads();
+  is_momentum_known_ = false;
+  dynamic_.frame->load_vector(now, f_);
+  dynamic_.frame->set_displacements(u_, now);
+  pushed_ = touching();
+  shaken_ = shaking();
+}
+
+StandingFrame::Motion StandingFrame::motion(std::uint32_t node) const {
+  const std::size_t first = dynamic_.frame->freedom(node);
+  if (first == FrameSolver::kHeld) return {};
+  return {{v_[first], v_[first + 1], v_[first + 2]}, {v_[first + 3], v_[first + 4], v_[first + 5]}};
+}
+
+void StandingFrame::stop_turning(std::uint32_t node) {
+  const std::size_t first = dynamic_.frame->freedom(node);
+  is_momentum_known_ = false;
+  if (first != FrameSolver::kHeld) std::fill_n(v_.begin() + static_cast<long>(first) + 3, 3, 0);
+}
+
+}  // namespace sunder
