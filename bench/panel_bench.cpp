@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Networks of chunks: error against plate theory by number of cells, and time. Run without options.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "sim/chunk_network.hpp"
+
+namespace {
+
+using namespace sunder;
+
+const Material kConcrete{.name = "concrete",
+                         .density = 2400,
+                         .youngs_modulus = 33.6e9,
+                         .poisson_ratio = 0,
+                         .tensile_strength = 2.9e6,
+                         .compressive_strength = 38e6,
+                         .source = "C30"};
+constexpr std::uint64_t kSeeds = 5;
+
+WallAsset panel(Vec2 size, double thickness, double cell, std::vector<std::string> anchors,
+                std::uint64_t seed) {
+  Wall wall;
+  wall.region = {rectangle(size), {}};
+  wall.thickness = thickness;
+  wall.pattern = VoronoiGridParams{cell, 0.9};
+  wall.anchors = std::move(anchors);
+  return fracture_wall(wall, 2400, {.seed = seed});
+}
+
+PanelHold held(Vec2 size, bool hinged = false) {
+  return {{Vec3{0, 0, 0}, {size.x, 0, 0}, {size.x, size.y, 0}, {0, size.y, 0}},
+          {hinged, hinged, hinged, hinged}};
+}
+
+/// The chunk's motion taken to its site.
+Vec3 at_site(const WallAsset& asset, const PanelState& state, const std::vector<Vec2>& sites,
+             std::uint32_t chunk) {
+  const Six& d = state.displacements[chunk];
+  const Vec3 c = asset.chunks[chunk].centroid;
+  const Vec3 arm{sites[chunk].x - c.x, sites[chunk].y - c.y, 0};
+  return Vec3{d[0], d[1], d[2]} + cross({d[3], d[4], d[5]}, arm);
+}
+
+std::uint32_t nearest(const std::vector<Vec2>& sites, Vec2 place) {
+  std::uint32_t best = 0;
+  for (std::uint32_t c = 1; c < sites.size(); ++c)
+    if (length(sites[c] - place) < length(sites[best] - place)) best = c;
+  return best;
+}
+
+/// Deflection at a place: from the nearest site along its slope.
+double deflection(const WallAsset& asset, const PanelState& state, const std::vector<Vec2>& sites,
+                  Vec2 place) {
+  const std::uint32_t c = nearest(sites, place);
+  const Six& d = state.displacements[c];
+  const Vec2 arm = place - sites[c];
+  return at_site(asset, state, sites, c).z + d[3] * arm.y - d[4] * arm.x;
+}
+
+struct Errors {
+  double deflection = 0, edge_moment = 0, centre_moment = 0;
+};
+
+/// Bending moment per metre of the bonds that a test picks, weighted with their length.
+template <class Test>
+double bond_moment(const WallAsset& asset, const PanelState& state, Test test) {
+  double sum = 0, share = 0;
+  for (std::size_t i = 0; i < asset.bonds.size(); ++i) {
+    const Bond& bond = asset.bonds[i];
+    if (!test(bond)) continue;
+    sum += dot(state.bonds[i].moment, cross({0, 0, 1}, bond.normal));
+    share += bond.area / asset.wall.thickness;
+  }
+  return sum / share;
+}
+
+/// A square plate under its weight against Timoshenko and Woinowsky-Krieger, with ν = 0. Clamped,
+/// table 35: w = 0.00126532 q a⁴/D, edge moment 0.0513 q a²; centre 0.02291/1.3 q a² (Taylor and
+/// Govindjee 2004; the table has 0.0231). On hinges, table 8: 0.00406235 q a⁴/D, centre 0.0479/1.3
+/// q a². The shear's part, 0.0737 q a²/κG t, is taken off: of the hinged plate exactly (Mindlin),
+/// of the clamped one nearly.
+Errors plate(bool hinged, double thickness, int cells, std::uint64_t seed) {
+  const double a = 6;
+  const WallAsset asset =
+      panel({a, a}, thickness, a / cells, {"bottom", "right", "top", "left"}, seed);
+  ChunkNetwork network(asset, kConcrete, held({a, a}, hinged));
+  network.set_gravity({0, 0, -9.81});
+  const PanelState state = network.solve({});
+  const double q = 2400 * thickness * 9.81, e = kConcrete.youngs_modulus;
+  const double shear = 0.0736713 * q * a * a / (5.0 / 12 * e * thickness);
+  const double w = -deflection(asset, state, network.sites(), {a / 2, a / 2}) - shear;
+  const double d = e * std::pow(thickness, 3) / 12, near = std::max(a / 40, a / cells);
+  const double edge = bond_moment(asset, state, [&](const Bond& bond) {
+    return bond.b == kWorld && bond.normal.y < -0.5 && std::abs(bond.centroid.x - a / 2) < near;
+  });
+  const double centre = bond_moment(asset, state, [&](const Bond& bond) {
+    return length(bond.centroid - Vec3{a / 2, a / 2, 0}) < near;
+  });
+  const double unit = q * a * a;
+  return {w / ((hinged ? 0.00406235 : 0.00126532) * unit * a * a / d) - 1,
+          hinged ? 0 : std::abs(edge) / (0.0513 * unit) - 1,
+          std::abs(centre) / ((hinged ? 0.0479 : 0.02291) / 1.3 * unit) - 1};
+}
+Errors clamped_plate(double thickness, int cells, std::uint64_t seed) {
+  return plate(false, thickness, cells, seed);
+}
+Errors hinged_plate(double thickness, int cells, std::uint64_t seed) {
+  return plate(true, thickness, cells, seed);
+}
+
+/// Cantilever strip under its weight: w = q L⁴/8D + q L²/2 κG t, M = q L²/2.
+Errors cantilever(double thickness, int cells, std::uint64_t seed) {
+  const double a = 4, b = 1;
+  const WallAsset asset = panel({a, b}, thickness, std::sqrt(a * b) / cells, {"left"}, seed);
+  ChunkNetwork network(asset, kConcrete, held({a, b}));
+  network.set_gravity({0, 0, -9.81});
+  const PanelState state = network.solve({});
+  const double q = 2400 * thickness * 9.81, e = kConcrete.youngs_modulus;
+  const double w = -deflection(asset, state, network.sites(), {a, b / 2});
+  const double exact = q * std::pow(a, 4) / 8 / (e * std::pow(thickness, 3) / 12) +
+                       q * a * a / 2 / (5.0 / 12 * e * thickness);
+  return {w / exact - 1,
+          -network.reaction(state, 3, {0, b / 2, 0}).moment.y / (q * b * a * a / 2) - 1, 0};
+}
+
+/// Deep beam: a wall clamped at the left that bends in its plane under its weight; Timoshenko's
+/// beam, κ = 5/6.
+Errors deep_beam(double thickness, int cells, std::uint64_t seed) {
+  const double a = 4, b = 1;
+  const WallAsset asset = panel({a, b}, thickness, std::sqrt(a * b) / cells, {"left"}, seed);
+  ChunkNetwork network(asset, kConcrete, held({a, b}));
+  network.set_gravity({0, -9.81, 0});
+  const PanelState state = network.solve({});
+  const double q = 2400 * thickness * b * 9.81, e = kConcrete.youngs_modulus;
+  const std::vector<Vec2> sites = network.sites();
+  const std::uint32_t c = nearest(sites, {a, b / 2});
+  const double w =
+      -(at_site(asset, state, sites, c).y + state.displacements[c][5] * (a - sites[c].x));
+  const double exact = q * std::pow(a, 4) / 8 / (e * thickness * b * b * b / 12) +
+                       q * a * a / 2 / (5.0 / 12 * e * thickness * b);
+  return {w / exact - 1, 0, 0};
+}
+
+void print(const char* name, double thickness, Errors (*errors)(double, int, std::uint64_t)) {
+  for (const int cells : {5, 10, 20, 40}) {
+    double mean[3] = {}, worst[3] = {};
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const Errors e = errors(thickness, cells, seed);
+      const double each[3] = {e.deflection, e.edge_moment, e.centre_moment};
+      for (int i = 0; i < 3; ++i) {
+        mean[i] += each[i] / kSeeds;
+        worst[i] = std::max(worst[i], std::abs(each[i]));
+      }
+    }
+    std::printf(
+        "%-10s t %.2f m %4d cells: deflection %+.4f (worst %.4f), edge moment %+.4f (%.4f), "
+        "centre moment %+.4f (%.4f)\n",
+        name, thickness, cells * cells, mean[0], worst[0], mean[1], worst[1], mean[2], worst[2]);
+  }
+}
+
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <class Work>
+double best_of(int runs, Work work) {
+  double best = 1e9;
+  for (int i = 0; i < runs; ++i) {
+    const double start = seconds();
+    work();
+    best = std::min(best, seconds() - start);
+  }
+  return best * 1e3;
+}
+
+void time(int cells) {
+  const double a = 6;
+  const WallAsset asset = panel({a, a}, 0.15, a / cells, {"bottom", "right", "top", "left"}, 1);
+  const double made = best_of(20, [&] {
+    ChunkNetwork network(asset, kConcrete, held({a, a}));
+    network.stiffness();
+  });
+  const double constructed = best_of(20, [&] {
+    ChunkNetwork network(asset, kConcrete, held({a, a}));
+  });
+  ChunkNetwork network(asset, kConcrete, held({a, a}));
+  network.set_gravity({0, 0, -9.81});
+  double sum = 0;
+  const double solved = best_of(50, [&] { sum += network.solve({}).bonds[0].utilisation; });
+  const auto count = static_cast<std::uint32_t>(asset.bonds.size());
+  std::uint32_t next = 0;
+  const double broken = best_of(10, [&] {
+    network.break_bonds(std::span(&next, 1));
+    next = (next + 7) % count;
+  });
+  const double condensed = best_of(5, [&] {
+    network.break_bonds(std::span(&next, 1));
+    next = (next + 7) % count;
+    network.stiffness();
+  });
+  std::printf(
+      "%zu chunks, %zu bonds: construct %.3f ms, + condense %.3f; solve and stresses %.4f; "
+      "break a bond %.4f, + condense %.3f ms  (%.6g)\n",
+      asset.chunks.size(), asset.bonds.size(), constructed, made, solved, broken, condensed, sum);
+}
+
+}  // namespace
+
+int main() {
+  for (const double thickness : {0.05, 0.2, 0.6}) {
+    print("clamped", thickness, clamped_plate);
+    print("hinged", thickness, hinged_plate);
+  }
+  for (const double thickness : {0.05, 0.2}) print("cantilever", thickness, cantilever);
+  print("deep beam", 0.2, deep_beam);
+  for (const int cells : {5, 10, 20}) time(cells);
+}
