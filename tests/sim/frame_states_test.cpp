@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "meshing/error.hpp"
 #include "sim/frame_solver.hpp"
@@ -353,6 +354,25 @@ TEST(FrameSolver, UnderSmallLoadsSecondOrderIsFirstOrderAlsoInDiaphragms) {
   first.solve(loads);
   second.solve(loads);
   EXPECT_LT(distance(told_by(frame, second), told_by(frame, first)), 1e-5);
+}
+
+TEST(FrameSolver, ProgressRisesToOneAndMayStop) {
+  const Frame frame = tower(4, 4, 6);
+  std::vector<double> told;
+  FrameSolverParams params;
+  params.progress = [&](double share) { told.push_back(share); };
+  FrameSolver solver(frame, params);
+  ASSERT_GT(told.size(), 5u);
+  EXPECT_GT(told.front(), 0);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_EQ(told.back(), 1);
+  const std::size_t first = told.size();
+  solver.break_joints(std::vector<std::uint32_t>{3, 40, 77});
+  EXPECT_EQ(told.size(), first);
+  params.progress = [](double share) {
+    if (share > 0.5) throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(FrameSolver(frame, params, solver), std::runtime_error);
 }
 
 }  // namespace
