@@ -206,7 +206,7 @@ void FrameSolver::Impl::refactor() {
   if (!factor) return;
   std::uint32_t failed = BlockFactor::kNoNode;
   if (!built) {
-    failed = factor->factor();
+    failed = factor->factor(params.progress);
   } else if (!changes.empty()) {
     failed = factor->change(changes);
   }
