@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "fracture/bonds.hpp"
 #include "fracture/pattern.hpp"
 #include "fracture/wall.hpp"
+#include "meshing/progress.hpp"
 #include "meshing/region.hpp"
 #include "meshing/tri_mesh.hpp"
 
@@ -43,9 +43,6 @@ struct WallAsset {
 struct Asset {
   std::vector<WallAsset> walls;
 };
-
-/// Told how much of the work is done, 0 … 1; may throw to stop.
-using Progress = std::function<void(double)>;
 
 struct FractureParams {
   std::uint64_t seed = 1;

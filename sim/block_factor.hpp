@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "meshing/progress.hpp"
 #include "sim/beam_element.hpp"
 
 namespace sunder {
@@ -50,7 +51,8 @@ class BlockFactor {
   void add(const BlockChange& change);
   /// Node of the first pivot that is not positive: a mechanism; kNoNode: factored.
   static constexpr std::uint32_t kNoNode = 0xFFFFFFFFu;
-  std::uint32_t factor();
+  /// `progress` may throw: then another factor() is needed.
+  std::uint32_t factor(const Progress& progress = {});
   /// Adds to the matrix and brings the factor up to date. kNoNode, or where it became singular:
   /// then the matrix holds the change and factor() or a further change must repair it before a
   /// solve.
@@ -62,6 +64,9 @@ class BlockFactor {
   void correct(std::span<const double> rest, std::span<double> x) const;
   /// A x with the matrix as it is now: for residuals.
   void multiply(std::span<const double> x, std::span<double> result) const;
+  /// What rounding of x alone makes of A x: the precision times the largest diagonal entry by its
+  /// x.
+  double rounding_of(std::span<const double> x) const;
   FactorCounts counts() const;
 
  private:

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "meshing/error.hpp"
@@ -53,11 +54,12 @@ struct BlockFactor::Impl {
     factor.touch(tree.place_of[change.b]);
   }
 
-  std::uint32_t refactor() {
+  std::uint32_t refactor(const Progress& progress) {
+    is_current = false;
     low_rank.clear();
     reuses = kMostReuses;
     ++(factor.stale_flops() < factor.flops() ? counts.partial : counts.full);
-    const std::uint32_t place = factor.refactor(matrix);
+    const std::uint32_t place = factor.refactor(matrix, progress);
     is_current = place == Front::kNone;
     return is_current ? kNoNode : tree.node_at[place];
   }
@@ -138,9 +140,9 @@ void BlockFactor::add(const BlockChange& change) {
   impl_->is_current = false;
 }
 
-std::uint32_t BlockFactor::factor() {
+std::uint32_t BlockFactor::factor(const Progress& progress) {
   impl_->factor.touch_all();
-  return impl_->refactor();
+  return impl_->refactor(progress);
 }
 
 std::uint32_t BlockFactor::change(std::span<const BlockChange> changes) {
@@ -152,7 +154,7 @@ std::uint32_t BlockFactor::change(std::span<const BlockChange> changes) {
     ++impl_->counts.low_rank;
     return kNoNode;
   }
-  return impl_->refactor();
+  return impl_->refactor({});
 }
 
 void BlockFactor::solve(std::span<const double> b, std::span<double> x) const {
@@ -180,6 +182,17 @@ void BlockFactor::correct(std::span<const double> rest, std::span<double> x) con
 
 void BlockFactor::multiply(std::span<const double> x, std::span<double> result) const {
   impl_->matrix.multiply(x, result);
+}
+
+double BlockFactor::rounding_of(std::span<const double> x) const {
+  double largest = 0;
+  for (std::uint32_t i = 0; i < impl_->tree.node_at.size(); ++i) {
+    const Matrix6& own = impl_->matrix.diagonal(i);
+    const std::size_t from = 6 * std::size_t{impl_->tree.node_at[i]};
+    for (std::size_t k = 0; k < 6; ++k)
+      largest = std::max(largest, own[7 * k] * std::fabs(x[from + k]));
+  }
+  return std::numeric_limits<double>::epsilon() * largest;
 }
 
 FactorCounts BlockFactor::counts() const {

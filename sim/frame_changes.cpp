@@ -123,12 +123,21 @@ void FrameSolver::Impl::find_pieces() {
     const std::uint32_t b = root_of(parent, std::min(member.node[1], ground));
     parent[std::min(a, b)] = std::max(a, b);
   }
+  std::vector<std::uint8_t> in_use(ground, 0);
+  for (const Member& member : members)
+    for (const std::uint32_t node : member.node)
+      if (member.present() && node < kFixed) in_use[node] = 1;
   std::vector<std::uint32_t> number(ground + 1, kNone);
   pieces.clear();
+  idle.clear();
   piece_of_node.assign(ground, kNone);
   for (std::uint32_t n = 0; n < ground; ++n) {
     const std::uint32_t root = root_of(parent, n);
     if (root == root_of(parent, ground)) continue;
+    if (!in_use[n]) {
+      idle.push_back(n);
+      continue;
+    }
     if (number[root] == kNone) {
       number[root] = static_cast<std::uint32_t>(pieces.size());
       pieces.emplace_back().pin = n;
@@ -137,7 +146,8 @@ void FrameSolver::Impl::find_pieces() {
   }
 }
 
-/// A free piece is held at one node. With mass in the matrix only what has none needs that.
+/// A free piece is held at one node, as is a node where nothing is left. With mass in the matrix
+/// only what has none needs that.
 void FrameSolver::Impl::pin_pieces() {
   std::vector<std::uint8_t> massive(links.node_count(), 0);
   if (params.mass != 0) {
@@ -148,6 +158,9 @@ void FrameSolver::Impl::pin_pieces() {
   std::vector<std::uint32_t> wanted;
   for (const Piece& piece : pieces)
     if (!massive[piece.pin]) wanted.push_back(piece.pin);
+  for (const std::uint32_t node : idle)
+    if (!massive[node]) wanted.push_back(node);
+  std::ranges::sort(wanted);
   // A spare node of a chain that parts may come to the ground: then its pin goes.
   const auto pin = [&](const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b,
                        double sign) {
@@ -206,7 +219,7 @@ void FrameSolver::Impl::refactor() {
   if (!factor) return;
   std::uint32_t failed = BlockFactor::kNoNode;
   if (!built) {
-    failed = factor->factor();
+    failed = factor->factor(params.progress);
   } else if (!changes.empty()) {
     failed = factor->change(changes);
   }

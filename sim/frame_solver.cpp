@@ -206,7 +206,7 @@ void FrameSolver::Impl::solve_refined() {
   constexpr double kSmall = 1e-12;
   if (!factor) return;
   factor->solve(f, u);
-  const double small = kSmall * largest(f);
+  const double small = std::max(kSmall * largest(f), factor->rounding_of(u));
   double left = rest_of(u);
   for (int round = 0; round < kMostRounds && left > small; ++round) {
     before = u;

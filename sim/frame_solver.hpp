@@ -28,6 +28,8 @@ struct FrameSolverParams {
   /// Of walls, kg, by number; empty: as their outlines weigh. In a piece a wall's neighbours, which
   /// trim it, may be missing.
   std::vector<double> wall_mass = {};
+  /// Told the share of the first factor that is done; what it throws leaves the constructor.
+  Progress progress = {};
 };
 
 /// Loads besides the weight; world, on the undeformed frame.
@@ -105,7 +107,7 @@ class FrameSolver {
   std::vector<Mechanism> mechanisms() const;
 
   /// Displacements, joint loads and reactions under these loads; refined (at most three times)
-  /// while the residual is above 1e-12 and falls.
+  /// while the residual falls and is above 1e-12 and what rounding of the displacements makes.
   void solve(const FrameLoads& loads);
   JointLoad joint_load(std::uint32_t joint) const;  ///< of an intact joint
   Vec3 displacement(std::uint32_t node) const;      ///< m

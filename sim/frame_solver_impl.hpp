@@ -198,6 +198,7 @@ struct FrameSolver::Impl {
   std::vector<std::uint8_t> gone;                     ///< per part: removed
   std::vector<std::uint32_t> piece_of_node;           ///< kNone: on the ground
   std::vector<Piece> pieces;
+  std::vector<std::uint32_t> idle;         ///< solver nodes without members, ascending
   std::vector<std::uint32_t> pinned;       ///< solver nodes, ascending
   std::vector<Restraint> rotations, held;  ///< held: where a pivot vanished
   double pin_stiffness = 0, pin_turn = 0;  ///< N/m, N m/rad

@@ -134,19 +134,25 @@ std::uint32_t FrontFactor::factor_front(std::uint32_t f, const BlockMatrix& matr
   return good == columns ? Front::kNone : front.first + static_cast<std::uint32_t>(good / 6);
 }
 
-std::uint32_t FrontFactor::refactor(const BlockMatrix& matrix) {
+std::uint32_t FrontFactor::refactor(const BlockMatrix& matrix, const Progress& progress) {
+  constexpr double kTold = 1e-3;
+  if (!keeps_rests_ && is_stale()) touch_all();  // a refactor that stopped kept nothing
+  const double all = stale_flops_;
+  double told = 0;
   for (std::uint32_t f = 0; f < stale_.size(); ++f) {
     if (!stale_[f]) continue;
     const std::uint32_t bad = factor_front(f, matrix);
-    if (bad != Front::kNone) {
-      if (!keeps_rests_) touch_all();
-      return bad;
-    }
+    if (bad != Front::kNone) return bad;
     stale_[f] = 0;
     --stale_count_;
     stale_flops_ -= front_flops_[f];
+    const double share = 1 - stale_flops_ / all;
+    if (!progress || share < told + kTold || !is_stale()) continue;
+    told = share;
+    progress(share);
   }
   stale_flops_ = 0;
+  if (progress) progress(1);
   return Front::kNone;
 }
 

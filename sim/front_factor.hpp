@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "meshing/progress.hpp"
 #include "sim/block_matrix.hpp"
 #include "sim/front_kernels.hpp"
 #include "sim/front_tree.hpp"
@@ -30,8 +31,9 @@ class FrontFactor {
   double flops() const { return flops_; }
 
   /// Brings the stale fronts up to date. Returns the place of the first pivot that is not positive:
-  /// then what is left stays stale. Else Front::kNone.
-  std::uint32_t refactor(const BlockMatrix& matrix);
+  /// then what is left stays stale, as it does if `progress` throws. Else Front::kNone. It is told
+  /// the share of the operations, at steps of a thousandth at least.
+  std::uint32_t refactor(const BlockMatrix& matrix, const Progress& progress = {});
 
   // With an up-to-date factor; six numbers per place.
   void forward(std::span<double> x) const;   ///< x = L⁻¹ x

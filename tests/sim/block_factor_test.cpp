@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <stdexcept>
 
 #include "sim/front_factor.hpp"
 #include "sim/front_tree.hpp"
@@ -506,6 +507,19 @@ TEST(BlockFactor, EveryWidthOfVectorsGivesTheSameBits) {
 TEST(BlockFactor, WithoutRoomForContributionsTheFactorIsTheSame) {
   const Model model = building(4, 5, 6);
   EXPECT_EQ(solve_by(model, front_kernels(), 0), solve_by(model, front_kernels(), 1e9));
+}
+
+TEST(BlockFactor, StoppedFactorIsFinishedByTheNext) {
+  const Model model = building(4, 5, 6);
+  BlockFactor whole = model.factor(), stopped = model.factor();
+  ASSERT_EQ(whole.factor(), BlockFactor::kNoNode);
+  const auto stop = [](double share) {
+    if (share > 0.3) throw std::runtime_error("stop");
+  };
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(stopped.factor(stop), std::runtime_error);
+  ASSERT_EQ(stopped.factor(), BlockFactor::kNoNode);
+  const Numbers b = random_vector(model.nodes, 6);
+  EXPECT_EQ(solve(stopped, b), solve(whole, b));
 }
 
 TEST(NodeOrder, HoldsEveryNodeOnce) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "meshing/error.hpp"
 #include "sim/frame_solver.hpp"
@@ -353,6 +354,113 @@ TEST(FrameSolver, UnderSmallLoadsSecondOrderIsFirstOrderAlsoInDiaphragms) {
   first.solve(loads);
   second.solve(loads);
   EXPECT_LT(distance(told_by(frame, second), told_by(frame, first)), 1e-5);
+}
+
+TEST(FrameSolver, ProgressRisesToOneAndMayStop) {
+  const Frame frame = tower(4, 4, 6);
+  std::vector<double> told;
+  FrameSolverParams params;
+  params.progress = [&](double share) { told.push_back(share); };
+  FrameSolver solver(frame, params);
+  ASSERT_GT(told.size(), 5u);
+  EXPECT_GT(told.front(), 0);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_EQ(told.back(), 1);
+  const std::size_t first = told.size();
+  solver.break_joints(std::vector<std::uint32_t>{3, 40, 77});
+  EXPECT_EQ(told.size(), first);
+  params.progress = [](double share) {
+    if (share > 0.5) throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(FrameSolver(frame, params, solver), std::runtime_error);
+}
+
+/// A bay of so many storeys whose mass is in the floors, 3.5 m high, its beams in bending
+/// `beam_share` times as stiff as its posts.
+Frame shear_building(std::size_t storeys, double beam_share) {
+  Frame frame = stocked_frame();
+  Section& post = frame.sections[0];
+  post.height = post.width = 0.1;
+  post.area = 0.01;  // stiff along, for its bending
+  post.iy = post.iz = 1.2e-8;
+  post.it = 1e-8;
+  Section& beam = frame.sections[1];
+  beam.height = beam.width = 1;
+  beam.area = 0.5;
+  beam.iy = beam.iz = beam.it = 5e-4;
+  frame.steels.push_back(frame.steels[0]);
+  frame.steels[1].youngs_modulus = beam_share * 210e9 * post.iy / beam.iy;
+  for (SteelGrade& steel : frame.steels) steel.density = 1e-6;
+  add_regular(frame, regular(2, 2, storeys));
+  for (FrameMember& member : frame.members)
+    member.steel = member.kind == FrameMember::Kind::beam ? 1 : 0;
+  join(frame);
+  return frame;
+}
+
+/// Circular frequency of a free vibration from the rest shape under forces on the floors: what the
+/// trapezoidal rule makes of it, ω' of tan(ω' dt/2) = ω dt/2, taken back.
+double frequency_of(const Frame& frame, const std::vector<double>& forces, double dt) {
+  FrameSolver rest(frame, {.shear = false});
+  FrameSolver moving(frame, {.shear = false, .mass = 4 / (dt * dt)}, rest);
+  FrameLoads pushes{.gravity = {}};
+  for (std::uint32_t m = 0; m < frame.members.size(); ++m) {
+    if (frame.members[m].kind != FrameMember::Kind::post) continue;
+    const Vec3 top = frame.nodes[frame.members[m].to].position;
+    const auto floor = static_cast<std::size_t>(std::lround(top.y / 3.5)) - 1;
+    pushes.contacts.push_back({m, top, {forces[floor], 0, 0}});
+  }
+  rest.solve(pushes);
+  std::vector<double> u(rest.displacements().begin(), rest.displacements().end());
+  const std::vector<double> shape = u;
+  std::vector<double> v(u.size()), f(u.size()), w(u.size()), in_mode;
+  const auto dot_with = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  };
+  for (int step = 0; step < 300; ++step) {
+    moving.mass_times(shape, f);
+    in_mode.push_back(dot_with(f, u));
+    moving.mass_times(v, w);
+    moving.stiffness_times(u, f);
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] = 4 / dt * w[i] - 2 * f[i];
+    moving.solve_system(f, w);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] += w[i];
+      v[i] = 2 / dt * w[i] - v[i];
+    }
+  }
+  // In a mode q₋ + q₊ = 2 cos(ω' dt) q.
+  double over = 0, under = 0;
+  for (std::size_t i = 1; i + 1 < in_mode.size(); ++i) {
+    over += in_mode[i] * (in_mode[i - 1] + in_mode[i + 1]) / 2;
+    under += in_mode[i] * in_mode[i];
+  }
+  return 2 / dt * std::tan(std::acos(over / under) / 2);
+}
+
+/// ω = 2 √(k/m) sin((2r − 1) π/(4n + 2)), at floor i the shape sin(i (2r − 1) π/(2n + 1)), for k =
+/// 12 EI/h³ of each of four posts. What is left are the beams' bending, by the inverse of their
+/// share, and the posts' stretch.
+TEST(FrameSolver, AShearBuildingSwingsInItsClosedFormModes) {
+  const double pi = 3.14159265358979, n = 5;
+  const double stiffness = 4 * 12 * 210e9 * 1.2e-8 / (3.5 * 3.5 * 3.5);
+  const double mass = 2400 * 0.15 * 36;
+  for (const int mode : {1, 2}) {
+    const double angle = (2 * mode - 1) * pi / (2 * n + 1);
+    const double expected = 2 * std::sqrt(stiffness / mass) * std::sin(angle / 2);
+    std::vector<double> shape;
+    for (int floor = 1; floor <= n; ++floor) shape.push_back(1e3 * std::sin(floor * angle));
+    std::vector<double> errors;
+    for (const double share : {1e2, 1e3, 1e5}) {
+      const Frame frame = shear_building(5, share);
+      errors.push_back(1 - frequency_of(frame, shape, 0.05 / expected) / expected);
+    }
+    EXPECT_NEAR(errors[0] / errors[1], 10, 0.5) << "mode " << mode << ", error " << errors[0];
+    EXPECT_LT(errors[0], 2e-2) << "mode " << mode;
+    EXPECT_LT(std::fabs(errors[2]), 1e-4) << "mode " << mode;
+  }
 }
 
 }  // namespace

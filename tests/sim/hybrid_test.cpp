@@ -391,6 +391,99 @@ TEST(Hybrid, BlowGivesTheFrameNoMoreThanTheBallLost) {
   }
 }
 
+/// No model is made of a piece that falls; one when it lands.
+TEST(Hybrid, PieceIsSolvedWhenItIsLoadedFirst) {
+  CollapseScene scene = hybrid_scene(2, 2, 1);
+  for (FrameNode& node : scene.frame.nodes) node.position.y += 3;
+  join(scene.frame);
+  Rig rig(scene);
+  const std::uint32_t joint = joint_named(rig.scene.frame, "beam_x_0_0_0@post_0_0_0");
+  rig.cut(rig.feet());
+  while (rig.now < 0.5) rig.step();  // what stands, nothing, falls quiet
+  const SolveCounts before = rig.motion->solves();
+  while (rig.now < 0.7) {
+    rig.step();
+    EXPECT_EQ(length(rig.motion->load(joint).force), 0);
+    EXPECT_FALSE(rig.motion->is_live(joint));
+  }
+  EXPECT_EQ(rig.motion->solves().full, before.full);
+  EXPECT_GT(rig.motion->solves().skipped, before.skipped);
+  while (rig.now < 1) rig.step();
+  EXPECT_EQ(rig.motion->solves().full, before.full + 1);
+  EXPECT_GT(length(rig.motion->load(joint).force), 0);
+  EXPECT_LT(rig.motion->residual(), 1e-10);
+}
+
+/// The factor of what rings is made in the background if something is on its way; whether it is
+/// ready when it is needed is not to be seen.
+TEST(Hybrid, FactorMadeAheadGivesTheSameBits) {
+  CollapseScene scene = hybrid_scene(3, 3, 2);
+  Rig at_need(scene);
+  scene.projectiles.emplace_back();
+  Rig ahead(scene);
+  const std::vector<std::uint32_t> joints{7, 8, 20};
+  for (Rig* rig : {&at_need, &ahead}) {
+    EXPECT_EQ(rig->motion->solves().full, 1u);
+    rig->step();
+    rig->cut(joints);
+    for (int i = 0; i < 20; ++i) rig->step();
+    EXPECT_EQ(rig->motion->solves().full, 2u);
+  }
+  for (std::uint32_t j = 0; j < scene.frame.joints.size(); ++j) {
+    if (std::ranges::find(joints, j) != joints.end()) continue;
+    EXPECT_EQ(at_need.motion->load(j).force, ahead.motion->load(j).force);
+    EXPECT_EQ(at_need.motion->load(j).torque, ahead.motion->load(j).torque);
+  }
+  EXPECT_EQ(at_need.motion->strain(), ahead.motion->strain());
+}
+
+TEST(Hybrid, WhatRingsIsFactoredOnlyWhereItRings) {
+  CollapseScene scene = hybrid_scene(2, 2, 2);
+  scene.simulation.duration = 0.1;
+  EXPECT_EQ(simulate_collapse(scene).solves.full, 1u);
+  Projectile ball;
+  ball.position = {-50, 5, 0};
+  scene.projectiles = {ball};
+  EXPECT_EQ(simulate_collapse(scene).solves.full, 1u) << "it misses";
+  scene.scenario.load_rate = 1e3;
+  EXPECT_EQ(simulate_collapse(scene).solves.full, 2u);
+  scene.simulation.quasi_static = true;
+  EXPECT_EQ(simulate_collapse(scene).solves.full, 1u);
+}
+
+/// Against the load beyond which the frame solver finds no second-order equilibrium.
+TEST(Hybrid, FrameThatBucklesInTheRunGoesOnAndIsTold) {
+  CollapseScene scene = hybrid_scene(2, 2, 2);
+  scene.simulation.p_delta = scene.simulation.quasi_static = true;
+  scene.rules.breaking = false;
+  scene.rules.post_rule = "none";
+  const auto buckles = [&](double live) {
+    FrameSolver solver(scene.frame, {.p_delta = true});
+    FrameLoads loads;
+    loads.live.assign(scene.frame.slabs.size(), live);
+    try {
+      solver.solve(loads);
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  double low = 0, high = 1e7;
+  ASSERT_TRUE(buckles(high));
+  while (high - low > 1e-4 * high) (buckles((low + high) / 2) ? high : low) = (low + high) / 2;
+  scene.scenario.load_rate = high / 0.5;
+  scene.simulation.duration = 0.6;
+  const CollapseResult r = simulate_collapse(scene);
+  ASSERT_EQ(r.buckles.size(), 1u);
+  EXPECT_NEAR(r.buckles[0].time, 0.5, 1.01 * scene.simulation.step);
+  EXPECT_NE(r.buckles[0].what.find("node_"), std::string::npos) << r.buckles[0].what;
+  EXPECT_EQ(r.warnings.size(), 1u);
+  EXPECT_TRUE(std::isfinite(r.energy.strain));
+  scene.scenario.load_rate = 0;
+  for (FrameSlab& slab : scene.frame.slabs) slab.live_load = high;
+  EXPECT_THROW(simulate_collapse(scene), Error) << "before anything happens it is an error";
+}
+
 TEST(Hybrid, MechanismIsAnErrorThatNamesItsNode) {
   CollapseScene scene;
   Frame& frame = scene.frame;
