@@ -192,6 +192,7 @@ void CollapseRun::start() {
                                "parts of it overlap");
   breaks_ = scene_.rules.breaking;
   start_ = motion_->strain() + motion_->potential();
+  if (panels_) panels_->start();
   sample(0);
   break_overloaded();  // what is over its strength at rest
   disturbed_ = !scene_.scenario.remove.empty() || scene_.scenario.load_rate > 0 ||
@@ -242,12 +243,15 @@ void CollapseRun::step_once(double end) {
       raise_load(dt);
       advance(dt, now_ + dt >= end - 1e-12 * end);
       if (panels_) {
-        panels_->after_step(now_);
+        panels_->after_step(now_, dt);
         panels_->follow_frame();
         disturbed_ |= panels_->any_awake();
       }
       break_overloaded();
-      if (panels_) panels_->follow_frame();
+      if (panels_) {
+        panels_->crack();
+        panels_->follow_frame();
+      }
     }
     if (arrival) panels_->arrive(*arrival);
     launch_due();

@@ -77,6 +77,9 @@ class FrameMotion {
   virtual void take_shape(std::uint32_t part, BodyId body) = 0;
   /// So much is left of a part that stands, kg.
   virtual void set_mass(std::uint32_t part, double mass) = 0;
+  /// How a node of the frame moved from where it was drawn: m, and rad.
+  virtual Vec3 displacement(std::uint32_t) const { return {}; }
+  virtual Vec3 rotation(std::uint32_t) const { return {}; }
   /// A part without joints goes, with the motion it has; its energy goes along.
   struct Leaving {
     Pose pose;  ///< of its frame

@@ -32,6 +32,7 @@ Panels::Panels(const CollapseScene& scene, bool skip, Host host)
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     panel_of_part_[panels_[w].part] = w;
     check_size(panels_[w]);
+    place_corners(panels_[w]);
   }
 }
 
@@ -107,15 +108,62 @@ Vec3 Panels::origin_of(const Panel& panel) const {
   return {box.low.x, box.low.y, 0};
 }
 
+const Material& Panels::material_of(const Panel& panel) const {
+  const Frame& frame = scene_.frame;
+  const bool is_slab = panel.part < frame.wall_part(0);
+  return frame.materials[is_slab ? frame.slabs[panel.part - frame.slab_part(0)].material
+                                 : frame.walls[panel.part - frame.wall_part(0)].material];
+}
+
+/// The wall's frame where the part stood.
+Pose Panels::standing_of(const Panel& panel) const {
+  const Pose pose = pose_of(host_.solids[panel.part]);
+  return {pose * origin_of(panel), pose.rotation};
+}
+
+/// The nodes that it hangs in: lower left, lower right, upper right, upper left in its frame.
+void Panels::place_corners(Panel& panel) const {
+  const Frame& frame = scene_.frame;
+  const bool is_slab = panel.part < frame.wall_part(0);
+  const auto& nodes = is_slab ? frame.slabs[panel.part - frame.slab_part(0)].nodes
+                              : frame.walls[panel.part - frame.wall_part(0)].nodes;
+  const Pose to_wall = inverse(standing_of(panel));
+  const Box box = bounding_box(host_.solids[panel.part].outline.outline);
+  const Vec2 middle = 0.5 * (box.high - box.low);
+  for (const std::uint32_t node : nodes) {
+    const Vec3 p = to_wall * frame.nodes[node].position;
+    const std::size_t corner = p.y < middle.y ? (p.x < middle.x ? 0 : 1) : (p.x < middle.x ? 3 : 2);
+    panel.nodes[corner] = node;
+    panel.hold.corners[corner] = p;
+  }
+  panel.hold.hinged = {true, true, true, true};
+}
+
+PanelFreedoms Panels::corners_of(const Panel& panel) const {
+  const Quaternion back = conjugate(standing_of(panel).rotation);
+  PanelFreedoms result;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 u = rotate(back, host_.motion.displacement(panel.nodes[i]));
+    const Vec3 r = rotate(back, host_.motion.rotation(panel.nodes[i]));
+    std::ranges::copy(std::array{u.x, u.y, u.z, r.x, r.y, r.z}, result.begin() + 6 * i);
+  }
+  return result;
+}
+
+Vec3 Panels::gravity_in(const Pose& pose) const {
+  return rotate(conjugate(pose.rotation), {0, -impact_.simulation.gravity, 0});
+}
+
+void Panels::start() {
+  for (Panel& panel : panels_) panel.start = corners_of(panel);
+}
+
 /// Chunks weigh together what the part does.
 ImpactWall Panels::wall_of(const Panel& panel) const {
   const Frame& frame = scene_.frame;
   const PartSolid& solid = host_.solids[panel.part];
-  const bool is_slab = panel.part < frame.wall_part(0);
   ImpactWall result;
-  result.material =
-      frame.materials[is_slab ? frame.slabs[panel.part - frame.slab_part(0)].material
-                              : frame.walls[panel.part - frame.wall_part(0)].material];
+  result.material = material_of(panel);
   const PanelPattern& pattern = frame.patterns[panel.pattern];
   Wall wall;
   wall.name = frame.part_name(panel.part);
@@ -191,6 +239,20 @@ void Panels::stand_up(std::uint32_t w) {
   walls_.stand(w, wall_of(panel));
   walls_.stand_for(old, w);
   panel.present = present(w);
+  make_stress(w);
+}
+
+/// Of a panel whose chunks all hang on the frame, of a material with strengths. Webs have no bonds
+/// before they are hit.
+void Panels::make_stress(std::uint32_t w) {
+  const WallState& wall = walls_.wall(w);
+  const Material& m = wall.material;
+  const bool has_strengths = m.youngs_modulus > 0 && m.tensile_strength > 0 &&
+                             m.compressive_strength >= m.tensile_strength;
+  if (!has_strengths || wall.web() || walls_.standing(w).chunks.size() != wall.chunks.size())
+    return;
+  panels_[w].stress.emplace(wall.asset, m, panels_[w].hold, panels_[w].start,
+                            gravity_in(wall.standing));
 }
 
 std::uint32_t Panels::present(std::uint32_t w) const {
@@ -216,6 +278,7 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
     if (struck != kNoBody) walls_.rename(struck, w);
   }
   panel.stands = false;
+  panel.stress.reset();
   // What is left of the panel is not where the middle of the whole was.
   shift_ += host_.world.potential_energy() - potential;
   result_.energy.contact -= host_.world.kinetic_energy() - kinetic;
@@ -224,15 +287,9 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
 /// Whether a contact had the energy to crack the panel across its thickness.
 bool Panels::is_hard(const Contact& contact, const Panel& panel) const {
   if (contact.approach < kLeastSpeed) return false;
-  const PartSolid& solid = host_.solids[panel.part];
-  const Frame& frame = scene_.frame;
-  const bool is_slab = panel.part < frame.wall_part(0);
-  const Material& material =
-      frame.materials[is_slab ? frame.slabs[panel.part - frame.slab_part(0)].material
-                              : frame.walls[panel.part - frame.wall_part(0)].material];
-  const double thickness = 2 * solid.half_length;
+  const double thickness = 2 * host_.solids[panel.part].half_length;
   return 0.5 * contact.impulse * contact.approach >
-         material.fracture_energy * thickness * thickness;
+         material_of(panel).fracture_energy * thickness * thickness;
 }
 
 /// A panel in one piece that something hit.
@@ -248,12 +305,71 @@ void Panels::meet(BodyId body, std::uint32_t prism, const Contact& contact) {
   }
 }
 
-void Panels::after_step(double now) {
+/// Impulses on standing chunks, in the frame of their wall.
+void Panels::note_touches(double dt) {
+  for (const Contact& contact : host_.world.contacts()) {
+    const Vec3 on_a = contact.impulse * contact.normal + contact.tangential;
+    for (const auto& [body, impulse] :
+         {std::pair{contact.a, on_a}, std::pair{contact.b, -1.0 * on_a}}) {
+      const auto at = walls_.standing_chunk(body);
+      if (!at || !panels_[at->wall].stress) continue;
+      const Pose back = inverse(walls_.wall(at->wall).standing);
+      panels_[at->wall].stress->touch(at->chunk, back * contact.point,
+                                      rotate(back.rotation, impulse));
+    }
+  }
+  for (Panel& panel : panels_)
+    if (panel.stress)
+      panel.stress->end_step(dt, scene_.rules.load_time, impact_.simulation.max_error);
+}
+
+/// Whether the frame has moved so that the panel could be over its strength somewhere.
+bool Panels::may_crack(const Panel& panel) const {
+  const Material& material = material_of(panel);
+  if (!(material.youngs_modulus > 0 && material.tensile_strength > 0 &&
+        material.compressive_strength >= material.tensile_strength))
+    return false;
+  PanelFreedoms moved = corners_of(panel);
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= panel.start[i];
+  const Box box = bounding_box(host_.solids[panel.part].outline.outline);
+  const PanelPlate plate{box.high - box.low, 2 * host_.solids[panel.part].half_length, {}};
+  return panel_stress_bound(plate, material, moved, gravity_in(standing_of(panel))) > 1;
+}
+
+void Panels::crack() {
+  for (std::uint32_t w = 0; w < panels_.size(); ++w) {
+    Panel& panel = panels_[w];
+    if (!host_.motion.stands(panel.part)) continue;
+    if (walls_.is_waiting(w)) {
+      if (host_.motion.any_live() && may_crack(panel)) stand_up(w);
+      if (walls_.is_waiting(w)) continue;
+    }
+    if (!panel.stress || !panel.stands) continue;
+    panel.stress->follow(walls_.standing(w));
+    const PanelFreedoms corners = corners_of(panel);
+    if (!panel.stress->is_stale(corners, impact_.simulation.max_error)) {
+      ++solves_skipped_;
+      continue;
+    }
+    ++solves_;
+    break_bonds(w, panel.stress->settle(corners));
+  }
+}
+
+void Panels::break_bonds(std::uint32_t w, std::span<const BrokenBond> broken) {
+  if (broken.empty()) return;
+  std::vector<std::uint32_t> bonds;
+  for (const BrokenBond& bond : broken) bonds.push_back(bond.bond);
+  walls_.break_standing(w, bonds, broken.front().utilisation);
+}
+
+void Panels::after_step(double now, double dt) {
   const std::vector<Contact> contacts(host_.world.contacts().begin(), host_.world.contacts().end());
   for (const Contact& contact : contacts) {
     meet(contact.a, contact.part_a, contact);
     meet(contact.b, contact.part_b, contact);
   }
+  note_touches(dt);
   walls_.after_step(now);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -8,6 +9,8 @@
 
 #include "sim/collapse.hpp"
 #include "sim/frame_motion.hpp"
+#include "sim/panel_bound.hpp"
+#include "sim/panel_stress.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/wall_run.hpp"
@@ -39,20 +42,26 @@ class Panels {
   void follow_shot(std::uint32_t shot, BodyId body, std::uint32_t track) {
     walls_.follow_shot(shot, body, track);
   }
+  /// Time 0: without stress but that of their weight.
+  void start();
   // A substep: prepare, next_arrival, the world's step, after_step, arrive.
   /// The longest substep in which nothing passes through a panel.
   double prepare(double dt);
   std::optional<WallRun::Arrival> next_arrival(double dt) const { return walls_.next_arrival(dt); }
-  void after_step(double now);
+  void after_step(double now, double dt);
   void arrive(const WallRun::Arrival& arrival) { walls_.arrive(arrival); }
   /// After the frame has changed: what hangs on nothing any more goes, what is left loads it.
   void follow_frame();
+  /// Panels crack where their own weight, what lies on them and the frame's motion ask too much.
+  void crack();
 
   void record() { walls_.record_islands(); }
   bool any_awake() const { return any_awake_; }
   double baseline() const { return walls_.baseline() + shift_; }
   Vec3 impulse() const { return walls_.impulse(); }
   const EnergyLedger& energy() const { return result_.energy; }
+  std::uint64_t solves() const { return solves_; }                  ///< of panels' networks
+  std::uint64_t solves_skipped() const { return solves_skipped_; }  ///< panels × steps
   std::uint64_t count() const { return panels_.size(); }
   /// What became of them. Their walls join the recording, whose parts say which of these they are.
   ImpactResult finish(Recording& recording);
@@ -61,8 +70,12 @@ class Panels {
   struct Panel {
     std::uint32_t part = 0;
     std::uint32_t pattern = 0;
-    bool stands = false;                     ///< as a wall of chunks
-    std::uint32_t present = 0;               ///< chunks that stood when the frame was last told
+    bool stands = false;                   ///< as a wall of chunks
+    std::uint32_t present = 0;             ///< chunks that stood when the frame was last told
+    std::array<std::uint32_t, 4> nodes{};  ///< of the frame, in the order of PanelCorners
+    PanelHold hold{};
+    PanelFreedoms start{};                   ///< corners at time 0, wall frame
+    std::optional<PanelStress> stress{};     ///< of one that stands as chunks
     std::vector<std::uint32_t> joints = {};  ///< that held it when it was looked at last
     Vec3 low{}, high{};                      ///< bounds of the part where it stood, world
   };
@@ -71,12 +84,21 @@ class Panels {
   static std::vector<Panel> panels_of(const Frame& frame, const std::vector<PartSolid>& solids);
   WallRun::Params wall_params();
   WallRun::Foreign foreign(BodyId body) const;
+  Pose standing_of(const Panel& panel) const;
   Vec3 origin_of(const Panel& panel) const;
   ImpactWall wall_of(const Panel& panel) const;
   std::vector<std::string> anchors_of(const Panel& panel) const;
   bool is_near(const Panel& panel, const RigidWorld::Bounds& bounds) const;
   bool is_hard(const Contact& contact, const Panel& panel) const;
   void stand_up(std::uint32_t w);
+  void place_corners(Panel& panel) const;
+  PanelFreedoms corners_of(const Panel& panel) const;
+  Vec3 gravity_in(const Pose& pose) const;
+  const Material& material_of(const Panel& panel) const;
+  void make_stress(std::uint32_t w);
+  void note_touches(double dt);
+  bool may_crack(const Panel& panel) const;
+  void break_bonds(std::uint32_t w, std::span<const BrokenBond> broken);
   std::size_t side_near(const Panel& panel, Vec2 point) const;
   void cut_anchors(std::uint32_t w);
   void come_loose(std::uint32_t w, BodyId struck);
@@ -89,8 +111,9 @@ class Panels {
   const ImpactScene impact_;
   const ImpactParams params_;
   ImpactResult result_;
-  std::vector<Panel> panels_;                 ///< by wall
-  double shift_ = 0;        ///< of the baseline, J
+  std::vector<Panel> panels_;  ///< by wall
+  std::uint64_t solves_ = 0, solves_skipped_ = 0;
+  double shift_ = 0;                          ///< of the baseline, J
   bool any_awake_ = false;                    ///< something was near a panel
   std::vector<std::uint32_t> panel_of_part_;  ///< kNoPart: it does not break
   WallRun walls_;

@@ -70,6 +70,7 @@ class StandingFrame {
   bool is_live() const { return is_live_; }  ///< loads have changed since forget_changes()
   void forget_changes() { is_live_ = can_step_again_ = false; }
   Vec3 displacement(std::uint32_t node) const { return in_use().displacement(node); }
+  Vec3 rotation(std::uint32_t node) const { return in_use().rotation(node); }
   /// Velocity and angular velocity of a node; in time.
   struct Motion {
     Vec3 velocity, spin;

@@ -164,7 +164,6 @@ void WallRun::break_standing(std::uint32_t w, std::span<const std::uint32_t> bon
   const Freed freed = break_bonds(w, found, found.size());
   walls_[w].touched = true;
   result_.max_utilisation = std::max(result_.max_utilisation, utilisation);
-  result_.energy.fracture += walls_[w].material.fracture_energy * freed.driven_area;
   const Vec3 centre =
       walls_[w].standing * (0.5 * Vec3{walls_[w].size_low.x + walls_[w].size_high.x,
                                        walls_[w].size_low.y + walls_[w].size_high.y, 0});
@@ -173,6 +172,13 @@ void WallRun::break_standing(std::uint32_t w, std::span<const std::uint32_t> bon
 
 Pose WallRun::pose_of(const Island& island) const {
   return island.body == kNoBody ? walls_[island.wall].standing : world_.pose(island.body);
+}
+
+std::optional<WallRun::ChunkPlace> WallRun::standing_chunk(BodyId body) const {
+  if (body >= owners_.size() || owners_[body].kind != Owner::Kind::collider) return {};
+  const Owner& what = owners_[body];
+  if (walls_[what.index].chunks[what.chunk].collider != body) return {};
+  return ChunkPlace{what.index, what.chunk};
 }
 
 WallRun::Owner WallRun::owner(BodyId body) const {

@@ -66,7 +66,12 @@ class WallRun {
   /// What stands of a wall: its chunks and bonds.
   const Island& standing(std::uint32_t wall) const { return islands_[wall]; }
   bool stands(std::uint32_t wall) const;
-  /// Breaks bonds of what stands of a wall.
+  /// The standing chunk that a collider is of.
+  struct ChunkPlace {
+    std::uint32_t wall = 0, chunk = 0;
+  };
+  std::optional<ChunkPlace> standing_chunk(BodyId body) const;
+  /// Breaks bonds of what stands of a wall; the energy is that of its strain, which nobody counts.
   void break_standing(std::uint32_t wall, std::span<const std::uint32_t> bonds, double utilisation);
 
   // Projectiles, by the scene's number.
