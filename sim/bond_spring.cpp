@@ -40,23 +40,17 @@ BondSpring::BondSpring(const Bond& bond, const BondEnds& ends, double thickness,
              (ends.is_hinged ? kHinge : 1) * plate,
              e * area * length_ * length_ / 12};
 
-  const auto row = [&](std::size_t mode, Vec3 direction, Vec3 point, bool is_turn) {
-    for (int end = 0; end < 2; ++end) {
-      const double sign = end == 0 ? -1 : 1;
-      const Vec3 turn =
-          is_turn ? direction : cross(point - (end == 0 ? ends.at_a : ends.at_b), direction);
-      const Vec3 move = is_turn ? Vec3{} : direction;
-      const double values[6] = {move.x, move.y, move.z, turn.x, turn.y, turn.z};
-      for (int i = 0; i < 6; ++i)
-        modes_[mode][static_cast<std::size_t>(6 * end + i)] = sign * values[i];
+  set_mode(0, normal_, bond.centroid, ends);
+  set_mode(1, along_, bond.centroid, ends);
+  set_mode(2, kUp, {middle.x, middle.y, 0}, ends);
+  const Vec3 axes[3] = {normal_, along_, kUp};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double turn[3] = {axes[k].x, axes[k].y, axes[k].z};
+    for (std::size_t i = 0; i < 3; ++i) {
+      modes_[3 + k][3 + i] = -turn[i];
+      modes_[3 + k][9 + i] = turn[i];
     }
-  };
-  row(0, normal_, bond.centroid, false);
-  row(1, along_, bond.centroid, false);
-  row(2, kUp, {middle.x, middle.y, 0}, false);
-  row(3, normal_, {}, true);
-  row(4, along_, {}, true);
-  row(5, kUp, {}, true);
+  }
   for (int r = 0; r < 12; ++r)
     for (int c = 0; c <= r; ++c) {
       double sum = 0;
@@ -65,6 +59,14 @@ BondSpring::BondSpring(const Bond& bond, const BondEnds& ends, double thickness,
                modes_[m][static_cast<std::size_t>(c)];
       stiffness_(r, c) = stiffness_(c, r) = sum;
     }
+}
+
+void BondSpring::set_mode(std::size_t mode, Vec3 direction, Vec3 point, const BondEnds& ends) {
+  for (const bool is_b : {false, true}) {
+    const Vec3 turn = cross(point - (is_b ? ends.at_b : ends.at_a), direction);
+    const double six[6] = {direction.x, direction.y, direction.z, turn.x, turn.y, turn.z};
+    for (std::size_t i = 0; i < 6; ++i) modes_[mode][i + (is_b ? 6 : 0)] = is_b ? six[i] : -six[i];
+  }
 }
 
 BondStress BondSpring::stress(const Twelve& displacements, const Material& material) const {

@@ -50,6 +50,9 @@ class BondSpring {
   BondStress stress(const Twelve& displacements, const Material& material) const;
 
  private:
+  /// A spring's stretch is b's motion at a point, in a direction, less a's.
+  void set_mode(std::size_t mode, Vec3 direction, Vec3 point, const BondEnds& ends);
+
   std::array<std::array<double, 12>, 6> modes_{};  ///< displacements → stretch of each spring
   std::array<double, 6> spring_{};                 ///< N/m and N m/rad
   Matrix12 stiffness_;

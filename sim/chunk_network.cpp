@@ -109,6 +109,9 @@ struct ChunkNetwork::Impl {
   void couple(std::span<double> columns) const;
   PanelMatrix corner_stiffness() const;
   Six world_motion(const Link& link, const PanelFreedoms& freedoms) const;
+  std::vector<double> driven(std::vector<double> f, const PanelFreedoms& freedoms) const;
+  std::vector<BondStress> stresses(std::span<const double> x, const PanelFreedoms& freedoms) const;
+  double residual(const std::vector<double>& f, const std::vector<BondStress>& bonds) const;
   Twelve ends(const Link& link, std::span<const double> x, const PanelFreedoms& freedoms) const;
   std::size_t chunk_count() const { return centres.size(); }
 };
@@ -344,6 +347,54 @@ Twelve ChunkNetwork::Impl::ends(const Link& link, std::span<const double> x,
   return both;
 }
 
+/// Forces on the chunks with what the moved corners add.
+std::vector<double> ChunkNetwork::Impl::driven(std::vector<double> f,
+                                               const PanelFreedoms& freedoms) const {
+  for (const Link& link : links) {
+    if (link.b != kWorld || !link.is_active) continue;
+    const Six moved = world_motion(link, freedoms);
+    const Matrix12& k = link.spring->stiffness();
+    for (std::size_t r = 0; r < 6; ++r)
+      for (std::size_t c = 0; c < 6; ++c)
+        f[6 * link.a + r] -= k(static_cast<int>(r), static_cast<int>(6 + c)) * moved[c];
+  }
+  return f;
+}
+
+std::vector<BondStress> ChunkNetwork::Impl::stresses(std::span<const double> x,
+                                                     const PanelFreedoms& freedoms) const {
+  std::vector<BondStress> result(links.size());
+  for (std::size_t id = 0; id < links.size(); ++id)
+    if (links[id].is_active)
+      result[id] = links[id].spring->stress(ends(links[id], x, freedoms), material);
+  return result;
+}
+
+double ChunkNetwork::Impl::residual(const std::vector<double>& f,
+                                    const std::vector<BondStress>& bonds) const {
+  std::vector<double> left = f;
+  double largest = 0, worst = 0;
+  for (std::size_t id = 0; id < links.size(); ++id) {
+    const Link& link = links[id];
+    if (!link.is_active) continue;
+    const BondStress& s = bonds[id];
+    largest = std::max(largest, length(s.force) + length(s.moment) / size);
+    for (const std::uint32_t chunk : {link.a, link.b}) {
+      if (chunk == kWorld) continue;
+      const double sign = chunk == link.a ? 1 : -1;
+      const Vec3 turn = s.moment + cross(link.centroid - centres[chunk], s.force);
+      const double six[6] = {s.force.x, s.force.y, s.force.z, turn.x, turn.y, turn.z};
+      for (std::size_t i = 0; i < 6; ++i) left[6 * chunk + i] += sign * six[i];
+    }
+  }
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const double scale = i % 6 < 3 ? 1 : 1 / size;
+    largest = std::max(largest, std::abs(f[i]) * scale);
+    worst = std::max(worst, std::abs(left[i]) * scale);
+  }
+  return largest > 0 ? worst / largest : 0;
+}
+
 ChunkNetwork::ChunkNetwork(const WallAsset& asset, const Material& material, const PanelHold& hold)
     : impl_(std::make_unique<Impl>(asset, material, hold)) {}
 ChunkNetwork::~ChunkNetwork() = default;
@@ -376,48 +427,14 @@ PanelFreedoms ChunkNetwork::load() {
 PanelState ChunkNetwork::solve(const PanelFreedoms& freedoms) const {
   const Impl& net = *impl_;
   const std::vector<double> f = net.loads();
-  std::vector<double> b = f;
-  for (const Link& link : net.links) {
-    if (link.b != kWorld || !link.is_active) continue;
-    const Six moved = net.world_motion(link, freedoms);
-    const Matrix12& k = link.spring->stiffness();
-    for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c)
-        b[6 * link.a + static_cast<std::size_t>(r)] -=
-            k(r, 6 + c) * moved[static_cast<std::size_t>(c)];
-  }
-  std::vector<double> x(b.size());
-  net.factor->solve(b, x);
+  std::vector<double> x(f.size());
+  net.factor->solve(net.driven(f, freedoms), x);
   PanelState state;
+  state.bonds = net.stresses(x, freedoms);
+  state.residual = net.residual(f, state.bonds);
   state.displacements.resize(net.chunk_count());
-  for (std::uint32_t c = 0; c < net.chunk_count(); ++c) {
-    if (!net.is_held[c]) std::fill_n(&x[6 * c], 6, 0.0);
-    std::copy_n(&x[6 * c], 6, state.displacements[c].begin());
-  }
-  state.bonds.resize(net.links.size());
-  std::vector<double> left = f;
-  double largest = 0;
-  const auto put = [&](std::uint32_t chunk, Vec3 force, Vec3 moment) {
-    const double six[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-    for (std::size_t i = 0; i < 6; ++i) left[6 * chunk + i] += six[i];
-  };
-  for (std::size_t id = 0; id < net.links.size(); ++id) {
-    const Link& link = net.links[id];
-    if (!link.is_active) continue;
-    const BondStress s = state.bonds[id] =
-        link.spring->stress(net.ends(link, x, freedoms), net.material);
-    put(link.a, s.force, s.moment + cross(link.centroid - net.centres[link.a], s.force));
-    largest = std::max(largest, length(s.force) + length(s.moment) / net.size);
-    if (link.b == kWorld) continue;
-    put(link.b, -1.0 * s.force,
-        -1.0 * (s.moment + cross(link.centroid - net.centres[link.b], s.force)));
-  }
-  for (std::size_t i = 0; i < f.size(); ++i) {
-    const double scale = i % 6 < 3 ? 1 : 1 / net.size;
-    largest = std::max(largest, std::abs(f[i]) * scale);
-    state.residual = std::max(state.residual, std::abs(left[i]) * scale);
-  }
-  if (largest > 0) state.residual /= largest;
+  for (std::uint32_t c = 0; c < net.chunk_count(); ++c)
+    if (net.is_held[c]) std::copy_n(&x[6 * c], 6, state.displacements[c].begin());
   return state;
 }
 

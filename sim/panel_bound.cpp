@@ -8,12 +8,16 @@
 namespace sunder {
 namespace {
 
-// Largest stress by that of a plate's simplest formula, over random networks, and 30 % more.
-constexpr double kStrain = 12, kShear = 5.5;      // E ε, E γ
-constexpr double kCurvature = 5.6, kTwist = 3.7;  // E κ t/2
-constexpr double kMove = 9, kLift = 8.5;          // of one corner: E u/l, E t w/l²
-constexpr double kTilt = 7, kDrill = 3.2;         // E t θ/l out of the plane, E θ in it
-constexpr double kSlab = 1.6, kWall = 2.4;        // weight across the plane and in it, by formula
+/// Largest stress by that of a plate's simplest formula, over random networks, and 30 % more.
+struct Shares {
+  double strain, shear;     ///< E ε, E γ
+  double curvature, twist;  ///< E κ t/2
+  double move, lift;        ///< of one corner: E u/l, E t w/l²
+  double tilt, drill;       ///< E t θ/l out of the plane, E θ in it
+};
+constexpr Shares kAllHeld{1, 5.5, 1.6, 1.05, 8, 5.5, 2.5, 3.2};
+constexpr Shares kSomeFree{12, 5.5, 5.6, 3.7, 9, 8.5, 7, 3.2};  // corners of held and free edges
+constexpr double kSlab = 1.6, kWall = 2.4;  // weight across the plane and in it, by formula
 
 /// Four corners' values as their mean and their mean gradients.
 struct Fit {
@@ -27,6 +31,8 @@ Fit fit(const std::array<double, 4>& v, Vec2 size) {
 
 /// Of the corners' motion, as a stress in units of Young's modulus.
 double motion_stress(const PanelPlate& plate, const PanelFreedoms& freedoms) {
+  const bool all_held = std::ranges::all_of(plate.held, [](bool held) { return held; });
+  const Shares& by = all_held ? kAllHeld : kSomeFree;
   const Vec2 half = 0.5 * plate.size;
   const std::array<Vec2, 4> at{Vec2{-half.x, -half.y}, {half.x, -half.y}, half, {-half.x, half.y}};
   std::array<std::array<double, 4>, 6> d{};  // by freedom and corner
@@ -43,18 +49,18 @@ double motion_stress(const PanelPlate& plate, const PanelFreedoms& freedoms) {
   }
   const Fit w = fit(lift, plate.size);
   const double spin = (v.by_x - u.by_y) / 2, t = plate.thickness;
-  double sum = kStrain * (std::abs(u.by_x) + std::abs(v.by_y)) +
-               kShear * std::abs(u.by_y + v.by_x) +
-               (kCurvature * (std::abs(kx) + std::abs(ky)) + kTwist * std::abs(kxy)) * t / 2;
+  double sum = by.strain * (std::abs(u.by_x) + std::abs(v.by_y)) +
+               by.shear * std::abs(u.by_y + v.by_x) +
+               (by.curvature * (std::abs(kx) + std::abs(ky)) + by.twist * std::abs(kxy)) * t / 2;
   const double l = std::min(plate.size.x, plate.size.y);
   for (std::size_t c = 0; c < 4; ++c) {
     const Vec2 p = at[c];
-    sum += kMove / l * (std::abs(d[0][c] - u.at(p)) + std::abs(d[1][c] - v.at(p))) +
-           kLift * t / (l * l) * std::abs(lift[c] - w.at(p)) +
-           kTilt * t / l *
+    sum += by.move / l * (std::abs(d[0][c] - u.at(p)) + std::abs(d[1][c] - v.at(p))) +
+           by.lift * t / (l * l) * std::abs(lift[c] - w.at(p)) +
+           by.tilt * t / l *
                (std::abs(d[3][c] - w.by_y - ky * p.y - kxy * p.x) +
                 std::abs(d[4][c] + w.by_x + kx * p.x + kxy * p.y)) +
-           kDrill * std::abs(d[5][c] - spin);
+           by.drill * std::abs(d[5][c] - spin);
   }
   return sum;
 }
