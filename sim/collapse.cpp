@@ -465,9 +465,7 @@ void CollapseRun::add_outcome(const ImpactResult& panels) {
   for (std::size_t i = 0; i < panels.projectiles.size(); ++i) {
     ProjectileOutcome& outcome = r.projectiles[i];
     const ProjectileOutcome& there = panels.projectiles[i];
-    if (there.hit && !outcome.hit) outcome = there;
-    outcome.perforated |= there.perforated;
-    if (there.perforated) outcome.residual_speed = there.residual_speed;
+    if (there.hit && there.speed_before > outcome.speed_before) outcome = there;
   }
 }
 

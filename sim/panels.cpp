@@ -19,6 +19,12 @@ constexpr double kLeastMass = 1e-3;
 /// Slower contacts break nothing, m/s.
 constexpr double kLeastSpeed = 0.5;
 
+/// What the network of its chunks needs of a material.
+bool has_strengths(const Material& m) {
+  return m.youngs_modulus > 0 && m.tensile_strength > 0 &&
+         m.compressive_strength >= m.tensile_strength;
+}
+
 }  // namespace
 
 Panels::Panels(const CollapseScene& scene, bool skip, Host host)
@@ -139,13 +145,17 @@ void Panels::place_corners(Panel& panel) const {
   panel.hold.hinged = {true, true, true, true};
 }
 
+/// Of a slab, out of its plane alone: in it the frame gives way, since it does not know how stiff
+/// its slabs are, and they would be strained as they never are. Walls stand in their bays with
+/// room.
 PanelFreedoms Panels::corners_of(const Panel& panel) const {
+  if (panel.part >= scene_.frame.wall_part(0)) return {};
   const Quaternion back = conjugate(standing_of(panel).rotation);
   PanelFreedoms result;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3 u = rotate(back, host_.motion.displacement(panel.nodes[i]));
     const Vec3 r = rotate(back, host_.motion.rotation(panel.nodes[i]));
-    std::ranges::copy(std::array{u.x, u.y, u.z, r.x, r.y, r.z}, result.begin() + 6 * i);
+    std::ranges::copy(std::array{0.0, 0.0, u.z, r.x, r.y, 0.0}, result.begin() + 6 * i);
   }
   return result;
 }
@@ -236,23 +246,24 @@ void Panels::stand_up(std::uint32_t w) {
   Panel& panel = panels_[w];
   panel.stands = any_awake_ = true;
   const BodyId old = host_.motion.give_up_shape(panel.part);
-  walls_.stand(w, wall_of(panel));
+  if (!panel.made) panel.made = wall_of(panel);
+  walls_.stand(w, *panel.made);
   walls_.stand_for(old, w);
   panel.present = present(w);
-  make_stress(w);
+  if (!panel.stress) make_stress(w);
 }
 
 /// Of a panel whose chunks all hang on the frame, of a material with strengths. Webs have no bonds
 /// before they are hit.
 void Panels::make_stress(std::uint32_t w) {
-  const WallState& wall = walls_.wall(w);
-  const Material& m = wall.material;
-  const bool has_strengths = m.youngs_modulus > 0 && m.tensile_strength > 0 &&
-                             m.compressive_strength >= m.tensile_strength;
-  if (!has_strengths || wall.web() || walls_.standing(w).chunks.size() != wall.chunks.size())
-    return;
-  panels_[w].stress.emplace(wall.asset, m, panels_[w].hold, panels_[w].start,
-                            gravity_in(wall.standing));
+  Panel& panel = panels_[w];
+  if (!has_strengths(material_of(panel))) return;
+  if (!panel.made) panel.made = wall_of(panel);
+  const WallAsset& asset = panel.made->asset;
+  if (std::holds_alternative<SpiderwebParams>(asset.wall.pattern)) return;
+  if (panel.stands && walls_.standing(w).chunks.size() != asset.chunks.size()) return;
+  panel.stress.emplace(asset, panel.made->material, panel.hold, panel.start,
+                       gravity_in(standing_of(panel)));
 }
 
 std::uint32_t Panels::present(std::uint32_t w) const {
@@ -274,7 +285,8 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
   if (panel.stands) {
     walls_.let_go(w, motion, track);
   } else {
-    walls_.set_free(w, wall_of(panel), motion, track);
+    if (!panel.made) panel.made = wall_of(panel);
+    walls_.set_free(w, *panel.made, motion, track);
     if (struck != kNoBody) walls_.rename(struck, w);
   }
   panel.stands = false;
@@ -319,16 +331,14 @@ void Panels::note_touches(double dt) {
     }
   }
   for (Panel& panel : panels_)
-    if (panel.stress)
+    if (panel.stress && panel.stands)
       panel.stress->end_step(dt, scene_.rules.load_time, impact_.simulation.max_error);
 }
 
 /// Whether the frame has moved so that the panel could be over its strength somewhere.
 bool Panels::may_crack(const Panel& panel) const {
   const Material& material = material_of(panel);
-  if (!(material.youngs_modulus > 0 && material.tensile_strength > 0 &&
-        material.compressive_strength >= material.tensile_strength))
-    return false;
+  if (!has_strengths(material)) return false;
   PanelFreedoms moved = corners_of(panel);
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= panel.start[i];
   const Box box = bounding_box(host_.solids[panel.part].outline.outline);
@@ -340,24 +350,23 @@ void Panels::crack() {
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
     if (!host_.motion.stands(panel.part)) continue;
-    if (walls_.is_waiting(w)) {
-      if (host_.motion.any_live() && may_crack(panel)) stand_up(w);
-      if (walls_.is_waiting(w)) continue;
-    }
-    if (!panel.stress || !panel.stands) continue;
-    panel.stress->follow(walls_.standing(w));
+    if (walls_.is_waiting(w) && !panel.stress && host_.motion.any_live() && may_crack(panel))
+      make_stress(w);
+    if (!panel.stress) continue;
+    if (panel.stands) panel.stress->follow(walls_.standing(w));
     const PanelFreedoms corners = corners_of(panel);
     if (!panel.stress->is_stale(corners, impact_.simulation.max_error)) {
       ++solves_skipped_;
       continue;
     }
     ++solves_;
-    break_bonds(w, panel.stress->settle(corners));
+    const std::vector<BrokenBond> broken = panel.stress->settle(corners);
+    if (!broken.empty() && !panel.stands) stand_up(w);
+    if (!broken.empty()) break_bonds(w, broken);
   }
 }
 
 void Panels::break_bonds(std::uint32_t w, std::span<const BrokenBond> broken) {
-  if (broken.empty()) return;
   std::vector<std::uint32_t> bonds;
   for (const BrokenBond& bond : broken) bonds.push_back(bond.bond);
   walls_.break_standing(w, bonds, broken.front().utilisation);

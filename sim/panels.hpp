@@ -75,6 +75,7 @@ class Panels {
     std::array<std::uint32_t, 4> nodes{};  ///< of the frame, in the order of PanelCorners
     PanelHold hold{};
     PanelFreedoms start{};                   ///< corners at time 0, wall frame
+    std::optional<ImpactWall> made{};        ///< its chunks, once they were needed
     std::optional<PanelStress> stress{};     ///< of one that stands as chunks
     std::vector<std::uint32_t> joints = {};  ///< that held it when it was looked at last
     Vec3 low{}, high{};                      ///< bounds of the part where it stood, world
