@@ -103,6 +103,7 @@ struct FrameSolver::Impl {
   void check() const;
   void make_members();
   void make_diaphragms();
+  void make_masses(const FrameLinks::Edges& edges);
   Role role_of(std::uint32_t m, int& held_end) const;
   Matrix12 mass_matrix(std::uint32_t m) const;
   void renew(std::uint32_t m);  ///< role, element, stiffness from the links
