@@ -16,27 +16,39 @@ FrameSolverParams static_params(const CollapseScene& scene) {
   return params;
 }
 
-/// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
-FrameSolverParams dynamic_params(const CollapseScene& scene) {
-  FrameSolverParams params = static_params(scene);
-  params.p_delta = false;
-  const double dt = scene.simulation.step;
-  params.stiffness = 1 + 2 / dt * scene.simulation.damping_stiffness;
-  params.mass = 4 / (dt * dt) + 2 / dt * scene.simulation.damping_mass;
-  return params;
-}
-
 }  // namespace
 
 StandingFrame::StandingFrame(const CollapseScene& scene) : scene_(scene), frame_(scene.frame) {}
 
-void StandingFrame::settle(const Progress&) {
-  static_.frame = std::make_unique<FrameSolver>(frame_, static_params(scene_));
+/// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
+FrameSolverParams StandingFrame::dynamic_params() const {
+  FrameSolverParams params = static_params(scene_);
+  params.p_delta = false;
+  const double dt = scene_.simulation.step;
+  params.stiffness = 1 + 2 / dt * scene_.simulation.damping_stiffness;
+  params.mass = 4 / (dt * dt) + 2 / dt * scene_.simulation.damping_mass;
+  return params;
+}
+
+StandingFrame::~StandingFrame() {
+  stops_ = true;
+}
+
+void StandingFrame::settle(const Progress& progress) {
+  FrameSolverParams params = static_params(scene_);
+  const double share =
+      scene_.simulation.settle / (scene_.simulation.settle + scene_.simulation.duration);
+  if (progress) params.progress = [progress, share](double done) { progress(share * done); };
+  static_.frame = std::make_unique<FrameSolver>(frame_, params);
   solve_static();
   is_settled_ = true;
   if (!may_ring()) return;
-  ahead_ = std::async(std::launch::async, [&scene = scene_, &like = *static_.frame] {
-    return std::make_unique<FrameSolver>(scene.frame, dynamic_params(scene), like);
+  FrameSolverParams ringing = dynamic_params();
+  ringing.progress = [&stops = stops_](double) {
+    if (stops) throw Error(ErrorCode::input, "the factor is not needed any more");
+  };
+  ahead_ = std::async(std::launch::async, [this, ringing, &like = *static_.frame] {
+    return std::make_unique<FrameSolver>(frame_, ringing, like);
   });
 }
 
@@ -152,12 +164,13 @@ void StandingFrame::make_dynamic() {
   if (ahead_.valid()) {
     dynamic_ = {ahead_.get()};
   } else {
-    dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(scene_), *static_.frame)};
+    dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(), *static_.frame)};
   }
   bring_up_to_date(dynamic_);
   dynamic_.frame->set_hinges(static_.frame->hinges());
   v_.assign(dynamic_.frame->freedoms(), 0);
-  for (std::vector<double>* each : {&f_, &way_, &f_next_, &springs_, &scratch_, &momentum_})
+  for (std::vector<double>* each :
+       {&f_, &way_, &f_next_, &springs_, &right_, &scratch_, &momentum_, &momentum_before_})
     each->resize(v_.size());
 }
 

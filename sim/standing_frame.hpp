@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -22,6 +23,9 @@ class StandingFrame {
  public:
   using Hinge = FrameSolver::Hinge;
   explicit StandingFrame(const CollapseScene& scene);
+  ~StandingFrame();
+  StandingFrame(const StandingFrame&) = delete;
+  StandingFrame& operator=(const StandingFrame&) = delete;
 
   /// The elastic state under the weight; nothing moves. Throws Error{input} as FrameSolver does.
   /// If anything of the scene can disturb it, the factor of what rings is begun in a thread of its
@@ -110,11 +114,13 @@ class StandingFrame {
   void solve_static();
   void go_first_order(const char* why);
   void balance();
+  FrameSolverParams dynamic_params() const;
   bool may_ring() const;
   void make_dynamic();
   void move_on();
   void find_momentum() const;
   void account_for_damping();
+  void note_residual(const std::vector<double>& mass_way, const std::vector<double>& spring_way);
   void take_state(const FrameSolver& old, const std::vector<double>& u,
                   const std::vector<double>& v);
   std::vector<Hinge> stiff_hinges() const;
@@ -124,11 +130,13 @@ class StandingFrame {
   const CollapseScene& scene_;
   const Frame& frame_;
   Solver static_, dynamic_;
+  std::atomic<bool> stops_ = false;                  ///< nobody waits for `ahead_` any more
   std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
   std::vector<std::uint32_t> broken_, gone_;         ///< all that was taken out
   std::vector<FrameLoads::OnPart> contacts_;
   // When it rings; in a step its way, the loads at its end, and what was when it began.
-  std::vector<double> u_, v_, f_, way_, f_next_, v_before_, springs_, scratch_;
+  std::vector<double> u_, v_, f_, way_, f_next_, v_before_, momentum_before_, springs_, right_,
+      scratch_;
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;   ///< by joint
