@@ -105,7 +105,7 @@ class FrameSolver {
   std::vector<Mechanism> mechanisms() const;
 
   /// Displacements, joint loads and reactions under these loads; refined (at most three times)
-  /// while the residual falls and is above 1e-12 and what rounding of the displacements makes.
+  /// while the residual falls and is above 1e-11 and what rounding of the displacements makes.
   void solve(const FrameLoads& loads);
   JointLoad joint_load(std::uint32_t joint) const;  ///< of an intact joint
   Vec3 displacement(std::uint32_t node) const;      ///< m

@@ -33,6 +33,9 @@ struct FrontKernels {
 
 constexpr std::size_t kStrip = 24;  ///< rows that the product of two blocks takes at once
 constexpr std::size_t kDeep = 192;  ///< columns that it sums up before it subtracts
+/// Columns of the result that it works on at once, a multiple of kStrip: what the second cache and
+/// the processor's table of pages hold.
+constexpr std::size_t kBroad = 192;
 constexpr std::size_t factor_scratch(std::size_t rows) {
   return (rows + 2 * kStrip) * kDeep;
 }

@@ -103,13 +103,16 @@ struct Wide {
   static void subtract_product(const double* strips, std::size_t rows, std::size_t columns,
                                std::size_t depth, To to) {
     alignas(64) double out[6 * kStrip];
-    for (std::size_t i = 0; i < rows; i += kStrip) {
-      const double* a = strips + i * depth;
-      const std::size_t height = rows - i < kStrip ? rows - i : kStrip;
-      for (std::size_t j = 0; j < columns && j < i + height; j += 6) {
-        const double* b = strips + j / kStrip * kStrip * depth + j % kStrip;
-        product(depth, a, kStrip, b, kStrip, (height + 7) / 8 * 8, out);
-        subtract(out, i, height, j, to);
+    for (std::size_t first = 0; first < columns; first += kBroad) {
+      const std::size_t last = columns - first < kBroad ? columns : first + kBroad;
+      for (std::size_t i = first; i < rows; i += kStrip) {
+        const double* a = strips + i * depth;
+        const std::size_t height = rows - i < kStrip ? rows - i : kStrip;
+        for (std::size_t j = first; j < last && j < i + height; j += 6) {
+          const double* b = strips + j / kStrip * kStrip * depth + j % kStrip;
+          product(depth, a, kStrip, b, kStrip, (height + 7) / 8 * 8, out);
+          subtract(out, i, height, j, to);
+        }
       }
     }
   }
