@@ -24,8 +24,6 @@ class StandingFrame {
   using Hinge = FrameSolver::Hinge;
   explicit StandingFrame(const CollapseScene& scene);
   ~StandingFrame();
-  StandingFrame(const StandingFrame&) = delete;
-  StandingFrame& operator=(const StandingFrame&) = delete;
 
   /// The elastic state under the weight; nothing moves. Throws Error{input} as FrameSolver does.
   /// If anything of the scene can disturb it, the factor of what rings is begun in a thread of its
@@ -54,8 +52,7 @@ class StandingFrame {
   void follow_hinges();  ///< after a step; one that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 
-  // Changes of what there is. Then carry_on(), or in time the displacements are not continued.
-  /// Joints break and parts leave, with all their joints.
+  // Changes of what there is: joints break, parts leave with all their joints. Then carry_on().
   void take_out(std::span<const std::uint32_t> joints, std::span<const std::uint32_t> parts);
   void stop_turning(std::uint32_t node);
   void carry_on();  ///< in time displacements are continuous, else there is a new balance
@@ -83,7 +80,7 @@ class StandingFrame {
   double strain() const;     ///< J
   double potential() const;  ///< of the weight on the displacements, J
   double energy() const;     ///< all three
-  /// Damping, plastic work and what contacts booked; settled by whoever breaks joints: fracture.
+  /// Damping, plastic work, what contacts booked. Fracture is booked by whoever breaks joints.
   const MotionLosses& losses() const { return losses_; }
   double given() const { return given_; }  ///< by the ground's motion, J
   SolveCounts solves() const;
