@@ -125,32 +125,40 @@ void StandingFrame::bring_up_to_date(Solver& solver) const {
   solver.parts = parts.size();
 }
 
-/// With the hinges that are left to it. Second order has no state where the frame buckles: after
-/// time 0 it goes on in first order.
+/// With the hinges that are left to it.
 void StandingFrame::solve_static() {
   try {
     bring_up_to_date(static_);
     if (has_rung_ && !hinges_.empty()) static_.frame->set_hinges(hinges_);
     static_.frame->solve(loads());
-  } catch (const Error& error) {
+  } catch (const Error&) {
     if (!is_settled_ || is_first_order_ || !scene_.simulation.p_delta) throw;
-    go_first_order(error.what());
+    solve_anew();
   }
   residual_ = std::max(residual_, static_.frame->residual());
   is_live_ = true;
 }
 
-void StandingFrame::go_first_order(const char* why) {
-  buckling_ = {now_, why};
-  is_first_order_ = true;
+/// What the stiffness knows of axial forces may be from before something broke: from none. Second
+/// order has no state where the frame buckles: then, and from then on, in first order.
+void StandingFrame::solve_anew() {
   const std::vector<Hinge> hinges = has_rung_ ? hinges_ : static_.frame->hinges();
-  FrameSolverParams params = static_params(scene_);
-  params.p_delta = false;
   if (ahead_.valid()) ahead_.wait();
-  static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
-  bring_up_to_date(static_);
-  static_.frame->set_hinges(hinges);
-  static_.frame->solve(loads());
+  FrameSolverParams params = static_params(scene_);
+  const auto solve = [&] {
+    static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
+    bring_up_to_date(static_);
+    static_.frame->set_hinges(hinges);
+    static_.frame->solve(loads());
+  };
+  try {
+    solve();
+  } catch (const Error& error) {
+    buckling_ = {now_, error.what()};
+    is_first_order_ = true;
+    params.p_delta = false;
+    solve();
+  }
 }
 
 /// Under other loads; in balance at any time, what they leave over counts as damping.

@@ -109,7 +109,7 @@ class StandingFrame {
   Vec3 gravity() const;
   void bring_up_to_date(Solver& solver) const;
   void solve_static();
-  void go_first_order(const char* why);
+  void solve_anew();
   void balance();
   FrameSolverParams dynamic_params() const;
   bool may_ring() const;
