@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "meshing/error.hpp"
 #include "sim/frame_solver_impl.hpp"
@@ -79,17 +80,19 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
   } else if (links.node_count() > 0) {
     factor.emplace(links.node_count(), edges);
   }
-  if (params.mass != 0) {
-    std::vector<std::uint32_t> places(links.node_count());
-    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = n;
-    masses.emplace(places, edges);
-    in_mass.assign(members.size(), {kNone, kNone, {}});
-  }
+  if (params.mass != 0) make_masses(edges);
   update(std::move(all_members), std::move(all_plates));
   f.assign(6 * std::size_t{links.node_count()}, 0);
   u = f;
   forces.assign(members.size(), {});
   plate_loads.assign(frame.joints.size(), {});
+}
+
+void FrameSolver::Impl::make_masses(const FrameLinks::Edges& edges) {
+  std::vector<std::uint32_t> places(links.node_count());
+  std::iota(places.begin(), places.end(), 0u);
+  masses.emplace(places, edges);
+  in_mass.assign(members.size(), {kNone, kNone, {}});
 }
 
 Twelve FrameSolver::Impl::displacements_of(const Member& member,

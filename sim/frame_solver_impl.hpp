@@ -103,6 +103,7 @@ struct FrameSolver::Impl {
   void check() const;
   void make_members();
   void make_diaphragms();
+  void make_masses(const FrameLinks::Edges& edges);
   Role role_of(std::uint32_t m, int& held_end) const;
   Matrix12 mass_matrix(std::uint32_t m) const;
   void renew(std::uint32_t m);  ///< role, element, stiffness from the links
@@ -187,7 +188,7 @@ struct FrameSolver::Impl {
   std::vector<BeamElement> elements;                 ///< of the members
   std::vector<std::vector<PointMass>> point_masses;  ///< of walls that hang, per member
   std::vector<BlockChange> in_factor;                ///< per member
-  std::optional<BlockMatrix> masses;                  ///< if it is in the factor
+  std::optional<BlockMatrix> masses;                 ///< if it is in the factor
   std::vector<BlockChange> in_mass;                  ///< per member
   std::vector<Bent> bent;                            ///< by when they first had a hinge
   std::vector<std::uint32_t> bent_of;                ///< per member; kNone: it has none

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -41,6 +43,21 @@ TEST(FrameSolver, TheOrderOfAnotherGivesTheSameBits) {
     EXPECT_EQ(displacements_under(again, loads), displacements_under(anew, loads));
     EXPECT_EQ(again.counts().nonzeros, anew.counts().nonzeros);
   }
+}
+
+TEST(FrameSolver, AnotherIsMadeWhileTheFirstIsAtWork) {
+  const Frame frame = tower(4, 3, 5);
+  const FrameLoads loads{.contacts = {{7, {3, 2, 1}, {0, 0, 9e3}}}};
+  FrameSolver first(frame);
+  auto made = std::async(std::launch::async, [&] {
+    return std::make_unique<FrameSolver>(frame, FrameSolverParams{}, first);
+  });
+  for (std::uint32_t joint = 0; joint < 5; ++joint) {
+    first.break_joints({&joint, 1});
+    first.solve(loads);
+  }
+  FrameSolver anew(frame);
+  EXPECT_EQ(displacements_under(*made.get(), loads), displacements_under(anew, loads));
 }
 
 TEST(FrameSolver, TheOrderOfAnotherFrameIsRefused) {
