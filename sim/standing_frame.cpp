@@ -16,27 +16,39 @@ FrameSolverParams static_params(const CollapseScene& scene) {
   return params;
 }
 
-/// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
-FrameSolverParams dynamic_params(const CollapseScene& scene) {
-  FrameSolverParams params = static_params(scene);
-  params.p_delta = false;
-  const double dt = scene.simulation.step;
-  params.stiffness = 1 + 2 / dt * scene.simulation.damping_stiffness;
-  params.mass = 4 / (dt * dt) + 2 / dt * scene.simulation.damping_mass;
-  return params;
-}
-
 }  // namespace
 
 StandingFrame::StandingFrame(const CollapseScene& scene) : scene_(scene), frame_(scene.frame) {}
 
-void StandingFrame::settle(const Progress&) {
-  static_.frame = std::make_unique<FrameSolver>(frame_, static_params(scene_));
+/// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
+FrameSolverParams StandingFrame::dynamic_params() const {
+  FrameSolverParams params = static_params(scene_);
+  params.p_delta = false;
+  const double dt = scene_.simulation.step;
+  params.stiffness = 1 + 2 / dt * scene_.simulation.damping_stiffness;
+  params.mass = 4 / (dt * dt) + 2 / dt * scene_.simulation.damping_mass;
+  return params;
+}
+
+StandingFrame::~StandingFrame() {
+  stops_ = true;
+}
+
+void StandingFrame::settle(const Progress& progress) {
+  FrameSolverParams params = static_params(scene_);
+  const double share =
+      scene_.simulation.settle / (scene_.simulation.settle + scene_.simulation.duration);
+  if (progress) params.progress = [progress, share](double done) { progress(share * done); };
+  static_.frame = std::make_unique<FrameSolver>(frame_, params);
   solve_static();
   is_settled_ = true;
   if (!may_ring()) return;
-  ahead_ = std::async(std::launch::async, [&scene = scene_, &like = *static_.frame] {
-    return std::make_unique<FrameSolver>(scene.frame, dynamic_params(scene), like);
+  FrameSolverParams ringing = dynamic_params();
+  ringing.progress = [&stops = stops_](double) {
+    if (stops) throw Error(ErrorCode::input, "the factor is not needed any more");
+  };
+  ahead_ = std::async(std::launch::async, [this, ringing, &like = *static_.frame] {
+    return std::make_unique<FrameSolver>(frame_, ringing, like);
   });
 }
 
@@ -116,32 +128,40 @@ void StandingFrame::bring_up_to_date(Solver& solver) const {
   solver.parts = parts.size();
 }
 
-/// With the hinges that are left to it. Second order has no state where the frame buckles: after
-/// time 0 it goes on in first order.
+/// With the hinges that are left to it.
 void StandingFrame::solve_static() {
   try {
     bring_up_to_date(static_);
     if (has_rung_ && !hinges_.empty()) static_.frame->set_hinges(hinges_);
     static_.frame->solve(loads());
-  } catch (const Error& error) {
+  } catch (const Error&) {
     if (!is_settled_ || is_first_order_ || !scene_.simulation.p_delta) throw;
-    go_first_order(error.what());
+    solve_anew();
   }
   residual_ = std::max(residual_, static_.frame->residual());
   is_live_ = true;
 }
 
-void StandingFrame::go_first_order(const char* why) {
-  buckling_ = {now_, why};
-  is_first_order_ = true;
+/// What the stiffness knows of axial forces may be from before something broke: from none. Second
+/// order has no state where the frame buckles: then, and from then on, in first order.
+void StandingFrame::solve_anew() {
   const std::vector<Hinge> hinges = has_rung_ ? hinges_ : static_.frame->hinges();
-  FrameSolverParams params = static_params(scene_);
-  params.p_delta = false;
   if (ahead_.valid()) ahead_.wait();
-  static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
-  bring_up_to_date(static_);
-  static_.frame->set_hinges(hinges);
-  static_.frame->solve(loads());
+  FrameSolverParams params = static_params(scene_);
+  const auto solve = [&] {
+    static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
+    bring_up_to_date(static_);
+    static_.frame->set_hinges(hinges);
+    static_.frame->solve(loads());
+  };
+  try {
+    solve();
+  } catch (const Error& error) {
+    buckling_ = {now_, error.what()};
+    is_first_order_ = true;
+    params.p_delta = false;
+    solve();
+  }
 }
 
 /// Under other loads; in balance at any time, what they leave over counts as damping.
@@ -155,12 +175,13 @@ void StandingFrame::make_dynamic() {
   if (ahead_.valid()) {
     dynamic_ = {ahead_.get()};
   } else {
-    dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(scene_), *static_.frame)};
+    dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(), *static_.frame)};
   }
   bring_up_to_date(dynamic_);
   dynamic_.frame->set_hinges(static_.frame->hinges());
   v_.assign(dynamic_.frame->freedoms(), 0);
-  for (std::vector<double>* each : {&f_, &way_, &f_next_, &springs_, &scratch_, &momentum_})
+  for (std::vector<double>* each :
+       {&f_, &way_, &f_next_, &springs_, &right_, &scratch_, &momentum_, &momentum_before_})
     each->resize(v_.size());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -22,6 +23,7 @@ class StandingFrame {
  public:
   using Hinge = FrameSolver::Hinge;
   explicit StandingFrame(const CollapseScene& scene);
+  ~StandingFrame();
 
   /// The elastic state under the weight; nothing moves. Throws Error{input} as FrameSolver does.
   /// If anything of the scene can disturb it, the factor of what rings is begun in a thread of its
@@ -50,8 +52,7 @@ class StandingFrame {
   void follow_hinges();  ///< after a step; one that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 
-  // Changes of what there is. Then carry_on(), or in time the displacements are not continued.
-  /// Joints break and parts leave, with all their joints.
+  // Changes of what there is: joints break, parts leave with all their joints. Then carry_on().
   void take_out(std::span<const std::uint32_t> joints, std::span<const std::uint32_t> parts);
   void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
   void stop_turning(std::uint32_t node);
@@ -81,7 +82,7 @@ class StandingFrame {
   double strain() const;     ///< J
   double potential() const;  ///< of the weight on the displacements, J
   double energy() const;     ///< all three
-  /// Damping, plastic work and what contacts booked; settled by whoever breaks joints: fracture.
+  /// Damping, plastic work, what contacts booked. Fracture is booked by whoever breaks joints.
   const MotionLosses& losses() const { return losses_; }
   double given() const { return given_; }  ///< by the ground's motion, J
   SolveCounts solves() const;
@@ -110,13 +111,15 @@ class StandingFrame {
   Vec3 gravity() const;
   void bring_up_to_date(Solver& solver) const;
   void solve_static();
-  void go_first_order(const char* why);
+  void solve_anew();
   void balance();
+  FrameSolverParams dynamic_params() const;
   bool may_ring() const;
   void make_dynamic();
   void move_on();
   void find_momentum() const;
   void account_for_damping();
+  void note_residual(const std::vector<double>& mass_way, const std::vector<double>& spring_way);
   void take_state(const FrameSolver& old, const std::vector<double>& u,
                   const std::vector<double>& v);
   std::vector<Hinge> stiff_hinges() const;
@@ -126,12 +129,14 @@ class StandingFrame {
   const CollapseScene& scene_;
   const Frame& frame_;
   Solver static_, dynamic_;
+  std::atomic<bool> stops_ = false;                  ///< nobody waits for `ahead_` any more
   std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
   std::vector<std::uint32_t> broken_, gone_;         ///< all that was taken out
   std::vector<std::pair<std::uint32_t, double>> masses_;  ///< of plates, as they changed
   std::vector<FrameLoads::OnPart> contacts_;
   // When it rings; in a step its way, the loads at its end, and what was when it began.
-  std::vector<double> u_, v_, f_, way_, f_next_, v_before_, springs_, scratch_;
+  std::vector<double> u_, v_, f_, way_, f_next_, v_before_, momentum_before_, springs_, right_,
+      scratch_;
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;   ///< by joint

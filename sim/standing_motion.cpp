@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The standing frame in time.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "sim/standing_frame.hpp"
@@ -51,8 +52,8 @@ void StandingFrame::solve_step() {
   const double dt = scene_.simulation.step;
   dynamic_.frame->load_vector(loads(), f_next_);
   for (std::size_t i = 0; i < f_.size(); ++i)
-    scratch_[i] = f_[i] + f_next_[i] - 2 * springs_[i] + 4 / dt * momentum_[i];
-  dynamic_.frame->solve_system(scratch_, way_);
+    right_[i] = f_[i] + f_next_[i] - 2 * springs_[i] + 4 / dt * momentum_[i];
+  dynamic_.frame->solve_system(right_, way_);
   for (std::size_t i = 0; i < v_.size(); ++i) v_[i] = 2 / dt * way_[i] - v_before_[i];
 }
 
@@ -108,17 +109,36 @@ void StandingFrame::find_momentum() const {
   is_momentum_known_ = true;
 }
 
-/// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt.
+/// Damping takes dt v̄ᵀ C v̄ with v̄ = w/dt; M w = dt (M v₀ + M v₁)/2, K w = K u₁ − K u₀.
 void StandingFrame::account_for_damping() {
   const double dt = scene_.simulation.step;
-  const double by_mass = scene_.simulation.damping_mass / 2;  // M w = dt (M v₀ + M v₁)/2
-  losses_.damping += by_mass * product_of(way_, momentum_);
+  std::vector<double>&mass_way = momentum_before_, &spring_way = springs_;
+  std::swap(momentum_, momentum_before_);
   is_momentum_known_ = false;
   find_momentum();
-  losses_.damping += by_mass * product_of(way_, momentum_);
-  dynamic_.frame->stiffness_times(u_, scratch_);  // K w = K u₁ − K u₀
-  losses_.damping += scene_.simulation.damping_stiffness / dt *
-                     (product_of(way_, scratch_) - product_of(way_, springs_));
+  dynamic_.frame->stiffness_times(u_, scratch_);
+  for (std::size_t i = 0; i < way_.size(); ++i) {
+    mass_way[i] = dt / 2 * (mass_way[i] + momentum_[i]);
+    spring_way[i] = scratch_[i] - spring_way[i];
+  }
+  losses_.damping += (scene_.simulation.damping_mass * product_of(way_, mass_way) +
+                      scene_.simulation.damping_stiffness * product_of(way_, spring_way)) /
+                     dt;
+  note_residual(mass_way, spring_way);
+}
+
+/// Of K* w, by the largest load, while anything stands.
+void StandingFrame::note_residual(const std::vector<double>& mass_way,
+                                  const std::vector<double>& spring_way) {
+  if (gone_.size() == frame_.part_count()) return;
+  const FrameSolverParams params = dynamic_params();
+  double load = 0, rest = 0;
+  for (std::size_t i = 0; i < right_.size(); ++i) {
+    load = std::max({load, std::fabs(f_[i]), std::fabs(right_[i])});
+    const double left = params.stiffness * spring_way[i] + params.mass * mass_way[i];
+    rest = std::max(rest, std::fabs(right_[i] - left));
+  }
+  if (load > 0) residual_ = std::max(residual_, rest / load);
 }
 
 void StandingFrame::fall_quiet(double dt) {

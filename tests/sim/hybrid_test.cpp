@@ -451,6 +451,19 @@ TEST(Hybrid, WhatRingsIsFactoredOnlyWhereItRings) {
   EXPECT_EQ(simulate_collapse(scene).solves.full, 1u);
 }
 
+/// The first factor counts as the time to settle.
+TEST(Hybrid, ProgressRisesFromTheFirstFactorOn) {
+  CollapseScene scene = hybrid_scene(4, 4, 8);
+  scene.simulation.settle = 1;
+  scene.simulation.duration = 0.05;
+  std::vector<double> told;
+  simulate_collapse(scene, {.progress = [&](double done) { told.push_back(done); }});
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  const double settled = 1 / 1.05;
+  EXPECT_GT(std::ranges::count_if(told, [&](double done) { return done < 0.99 * settled; }), 5);
+  EXPECT_NEAR(told.back(), 1, 1e-12);
+}
+
 /// Against the load beyond which the frame solver finds no second-order equilibrium.
 TEST(Hybrid, FrameThatBucklesInTheRunGoesOnAndIsTold) {
   CollapseScene scene = hybrid_scene(2, 2, 2);
