@@ -217,6 +217,7 @@ Json panel_schema(Json schema, bool is_override) {
 void add_panel_keys(Json& schema) {
   add_keys(schema["properties"], kPanelKeys,
            std::array<Json, std::size(kPanelKeys)>{reference("pattern"), Json{{"type", "string"}}});
+  schema["not"] = {{"required", {"pattern", "asset"}}};
 }
 
 Json slab_schema(bool is_override) {

@@ -180,7 +180,7 @@ struct StoreyParams {
   double wall_thickness = 0;  ///< m; 0: none
   std::string wall_material = "brick";
   double live_load = 0;                                    ///< N/m²
-  std::optional<PanelPattern> slab_pattern, wall_pattern;  ///< none: they stay whole
+  std::optional<PanelPattern> slab_pattern{}, wall_pattern{};  ///< none: they stay whole
   /// Range of bays that this storey has along x and z, [first, end): set-backs.
   std::array<std::uint32_t, 2> bays_x{0, 0xFFFFFFFFu}, bays_z{0, 0xFFFFFFFFu};
 };

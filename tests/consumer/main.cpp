@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "fracture/asset.hpp"
+#include "fracture/recover.hpp"
 #include "io/collapse_scene.hpp"
 #include "io/export.hpp"
 #include "io/impact_scene.hpp"

@@ -506,7 +506,7 @@ TEST(Materials, BuiltInOnesAreComplete) {
     EXPECT_GT(material.fracture_energy, 1) << material.name;
     EXPECT_FALSE(material.source.empty()) << material.name;
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"concrete-c20", "concrete-c30", "concrete-c40",
+  EXPECT_EQ(names, (std::vector<std::string>{"concrete-c20", "concrete-c30", "concrete-c30-reinforced", "concrete-c40",
                                              "concrete-c50", "brick", "float-glass",
                                              "toughened-glass", "gypsum", "pmma"}));
   EXPECT_EQ(find_material(builtin_materials(), Wall().material).density, 2400);

@@ -58,6 +58,7 @@ class SchemaValidator {
                                              "anyOf",
                                              "allOf",
                                              "if",
+                                             "not",
                                              "minimum",
                                              "maximum",
                                              "minItems",
@@ -86,6 +87,7 @@ class SchemaValidator {
     if (key == "oneOf") return matches(rule, value) == 1;
     if (key == "anyOf") return matches(rule, value) >= 1;
     if (key == "allOf") return matches(rule, value) == static_cast<long>(rule.size());
+    if (key == "not") return !accepts(rule, value);
     if (key == "if") return !accepts(rule, value) || accepts(schema.at("then"), value);
     if (value.is_number()) return holds_for_number(key, rule, value);
     if (value.is_string()) return holds_for_text(key, rule, value);
