@@ -130,5 +130,41 @@ TEST(Solid, BricksOfEveryShapeAreSound) {
   }
 }
 
+TEST(Solid, RoughFacesAreSoundAndMatch) {
+  for (const test::Shape& shape : test::shapes()) {
+    SCOPED_TRACE(shape.name);
+    SolidModel model;
+    SolidVoronoiParams pattern;
+    pattern.count = 8;
+    model.pattern = pattern;
+    model.roughness = 0.01;
+    model.roughness_size = std::string_view(shape.name) == "vase" ? 0.05 : 0.25;
+    const SolidAsset asset = fracture_solid(model, test::as_surface(shape.mesh), 2400, {});
+    expect_sound(asset);
+    EXPECT_GT(asset.stats.roughness, 0.004);
+  }
+}
+
+TEST(Solid, WavySlicesAreSoundAndTouchTheirAmplitude) {
+  SolidModel model;
+  SolidSlicesParams slices;
+  slices.slices = {0, 1, 0};
+  slices.amplitude = 0.1;
+  slices.wavelength = 0.5;
+  model.pattern = slices;
+  const SolidAsset asset =
+      fracture_solid(model, test::as_surface(test::box({0, 0, 0}, {1, 1, 1})), 2400, {});
+  expect_sound(asset);
+  ASSERT_EQ(asset.partition.chunk_count(), 2u);
+  double low = 1, high = 0;
+  for (const auto& t : asset.partition.triangles)
+    if (t.is_inner())
+      for (const std::uint32_t v : t.corners) {
+        low = std::min(low, asset.partition.vertices[v].y);
+        high = std::max(high, asset.partition.vertices[v].y);
+      }
+  EXPECT_NEAR(high - low, 0.2, 0.02);
+}
+
 }  // namespace
 }  // namespace sunder
