@@ -30,7 +30,8 @@ struct SolidFrame {
   Vec3 to_steps(Vec3 metres) const { return (1 / step) * (metres - centre) + shift; }
   Vec3 to_metres(Vec3 steps) const { return centre + step * (steps - shift); }
 };
-/// The frame of a box; its sizes are finite, one above 0.
+/// The frame of a box; its sizes are finite, one above 0. Its points are whole numbers of steps
+/// from the origin.
 SolidFrame make_solid_frame(Vec3 low, Vec3 high);
 
 /// Space cut into convex cells, face to face: a facet is a whole face of both its cells, an edge
