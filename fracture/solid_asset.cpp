@@ -102,6 +102,7 @@ void cut_flat(SolidAsset& asset, std::uint64_t seed, int threads) {
   asset.stats.exact_predicates = cut.exact_predicates;
   asset.stats.triangles_cut = cut_triangles(cut);
   asset.partition = partition_solid(mesh, {}, cutter.complex, cut, threads, asset.stats);
+  if (!cutter.complex.labels.empty()) merge_outer_triangles(mesh, asset.partition);
   asset.chunks = solid_masses(asset.partition, threads);
 }
 
@@ -127,6 +128,7 @@ bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int
   asset.stats.amplitude = warp.amplitude();
   asset.partition =
       partition_solid(fine.mesh, fine.parents, cutter.complex, cut, threads, asset.stats);
+  merge_outer_triangles(asset.surface.mesh, asset.partition);
   asset.chunks = solid_masses(asset.partition, threads);
   return std::ranges::all_of(asset.chunks, [](const auto& chunk) { return chunk.volume > 0; });
 }
