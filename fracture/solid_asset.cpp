@@ -98,7 +98,8 @@ std::uint64_t cut_triangles(const CutSolid& cut) {
 void cut_flat(SolidAsset& asset, std::uint64_t seed, int threads) {
   const TriMesh& mesh = asset.surface.mesh;
   Cutter cutter{asset.solid, mesh, mesh, seed, threads};
-  const CutSolid cut = cutter.cut();
+  CutSolid cut = cutter.cut();
+  flip_flat_triangles(cut);
   asset.stats.exact_predicates = cut.exact_predicates;
   asset.stats.triangles_cut = cut_triangles(cut);
   asset.partition = partition_solid(mesh, {}, cutter.complex, cut, threads, asset.stats);
@@ -121,6 +122,7 @@ bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int
       cut.places[v] =
           v < cut.surface_places.size() ? cut.surface_places[v] : warp.unwarped(cut.places[v]);
   });
+  flip_flat_triangles(cut);
   asset.stats = {};
   asset.stats.exact_predicates = cut.exact_predicates;
   asset.stats.triangles_cut = cut_triangles(cut);
