@@ -95,7 +95,7 @@ int main() {
   row("wall, voronoi 100", wall, voronoi(100), 0.085);
   row("wall, voronoi 1000", wall, voronoi(1000), 4.3);
   row("wall, voronoi 2000", wall, voronoi(2000), 20.5);
-  row("wall, voronoi 5000", wall, voronoi(5000), 0);
+  row("wall, voronoi 5000", wall, voronoi(5000), 295);
   row("sphere, voronoi 1000", test::sphere({0, 0, 0}, 1, 158), voronoi(1000), 0);
   row("torus, voronoi 1000", test::torus(1, 0.3, 320, 160), voronoi(1000), 0);
   row("gear, voronoi 1000", test::gear(), voronoi(1000), 0);

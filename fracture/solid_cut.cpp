@@ -115,15 +115,13 @@ struct Clipper {
     return sign;
   }
 
-  // Sign of the plane's value at a point that is given, not computed.
-  int plane_side(const SolidComplex::Plane& plane, Vec3 x) {
+  // Sign of the plane's value at a point that is given, not computed. Which planes are asked
+  // depends on where the search began: what comes of it must not, so contacts are left to the
+  // clipping.
+  static int plane_side(const SolidComplex::Plane& plane, Vec3 x) {
     const Bounded value = plane_value<Bounded>(plane, x);
     if (value.is_certain()) return value.value > 0 ? 1 : -1;
-    ++exact_predicates;
-    const Corners3 point{x, x, x};
-    const int sign = exact_side(point, {1}, {2}, {-1, &plane, 1});
-    if (sign == 0) throw ExactContact{triangle};
-    return sign;
+    return exact_side({x, x, x}, {1}, {2}, {-1, &plane, 1});
   }
 
   // The cell of a point: across facets that it is beyond, each nearer to it.

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "fracture/solid_shapes.hpp"
 #include "fracture/solid_sound.hpp"
+#include "meshing/random.hpp"
 
 namespace sunder::test {
 namespace {
@@ -105,6 +107,51 @@ TEST(Solid, WavySlicesAreSoundAndTouchTheirAmplitude) {
         high = std::max(high, asset.partition.vertices[v].y);
       }
   EXPECT_NEAR(high - low, 0.2, 0.02);
+}
+
+// Patterns drawn at random.
+TEST(Solid, RandomPatternsOfEveryShapeAreSound) {
+  std::uint64_t seed = 100;
+  for (const Shape& shape : shapes()) {
+    ++seed;
+    SCOPED_TRACE(testing::Message() << shape.name << ", seed " << seed);
+    const auto draw = [&](std::uint64_t k) { return random_unit(seed, k); };
+    const double size = std::string_view(shape.name) == "vase" ? 0.3 : 1.5;
+    SolidVoronoiParams near;
+    near.count = 40;
+    near.points = {size * Vec3{0.3, 0.2, 0.1}};
+    near.radius = 0.3 * size;
+    SolidSlicesParams slices;
+    slices.slices = {std::floor(5 * draw(0)), std::floor(5 * draw(1)), std::floor(5 * draw(2))};
+    slices.offset_variation = draw(3);
+    slices.angle_variation = 0.5 * draw(4);
+    SolidRadialParams radial;
+    radial.radius = size * draw(5) + 0.05;
+    radial.axis = {draw(6) - 0.5, draw(7) - 0.5, draw(8) - 0.5};
+    SolidBrickParams bricks;
+    bricks.brick = size * Vec3{0.2 + 0.3 * draw(9), 0.2 + 0.2 * draw(10), 0.2 + 0.2 * draw(11)};
+    bricks.mortar = 0.02 * size * draw(12);
+    bricks.offset = draw(13);
+    for (const SolidPatternParams& pattern :
+         {SolidPatternParams(near), SolidPatternParams(slices), SolidPatternParams(radial),
+          SolidPatternParams(bricks)})
+      expect_sound(fractured(shape.mesh, pattern, seed));
+  }
+}
+
+TEST(Solid, ATurnedSolidIsTheSameWithTurnedSites) {
+  TriMesh mesh = gear();
+  SolidVoronoiParams pattern;
+  for (std::uint64_t i = 0; i < 30; ++i)
+    pattern.sites.push_back(
+        {2 * random_unit(9, i, 0) - 1, 2 * random_unit(9, i, 1) - 1, 0.3 * random_unit(9, i, 2)});
+  const SolidAsset one = fractured(mesh, pattern);
+  for (Vec3& v : mesh.vertices) v = {-v.y, v.x, v.z};
+  for (Vec3& v : pattern.sites) v = {-v.y, v.x, v.z};
+  const SolidAsset turned = fractured(mesh, pattern);
+  ASSERT_EQ(one.chunks.size(), turned.chunks.size());
+  for (std::size_t c = 0; c < one.chunks.size(); ++c)
+    EXPECT_NEAR(one.chunks[c].volume, turned.chunks[c].volume, 1e-9);
 }
 
 }  // namespace
