@@ -22,6 +22,14 @@ std::uint64_t solid_seed(std::uint64_t seed, const std::string& name) {
 }
 
 void check_numbers(const SolidModel& solid, const ModelSurface& surface) {
+  const auto* slices = std::get_if<SolidSlicesParams>(&solid.pattern);
+  const bool waves = slices && slices->amplitude != 0;
+  if (!(solid.roughness >= 0 && solid.roughness_size >= 0 && solid.uv_scale > 0) ||
+      (waves && !(slices->amplitude > 0 && slices->wavelength > 0)))
+    throw Error(ErrorCode::geometry,
+                "solid " + solid.name +
+                    ": roughness, roughness_size, amplitude, wavelength or uv_scale is out of "
+                    "range; valid are from 0, wavelength and uv_scale above 0");
   for (const Vec3& v : surface.mesh.vertices)
     if (!std::isfinite(v.x + v.y + v.z))
       throw Error(ErrorCode::geometry, "solid " + solid.name + ": a coordinate is not finite");
@@ -215,9 +223,15 @@ SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double 
   asset.volume_expected = mass_properties(mesh).volume;
   if (!(asset.volume_expected > 0))
     throw Error(ErrorCode::geometry, "solid " + solid.name + ": the surface faces inwards");
+  const auto tell = [&](double share) {
+    if (params.progress) params.progress(share);
+  };
+  tell(0);
   cut_asset(asset, solid_seed(params.seed, solid.name), params.threads);
+  tell(0.9);
   verify(asset);
   asset.bonds = solid_bonds(asset.partition);
+  tell(1);
   return asset;
 }
 

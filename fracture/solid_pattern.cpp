@@ -169,6 +169,11 @@ struct ComplexMaker {
     return complex_of(sites);
   }
   SolidComplex operator()(const SolidSlicesParams& p) const {
+    constexpr double kMostAngle = 1.5;  // rad: beyond, a slice is another axis's
+    if (!(p.offset_variation >= 0 && p.offset_variation <= 1 && p.angle_variation >= 0 &&
+          p.angle_variation <= kMostAngle))
+      refuse("offset_variation = ", p.offset_variation, ", angle_variation = ", p.angle_variation,
+             " rad, valid are 0 … 1, 0 … ", kMostAngle);
     const InsideTest box(mesh);
     const Vec3 size = box.high() - box.low();
     std::array<std::vector<double>, 3> at;

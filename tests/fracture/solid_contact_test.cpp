@@ -152,6 +152,53 @@ TEST(SolidContact, WhatIsNoSolidIsRefusedWithAPlace) {
   }
 }
 
+TEST(SolidContact, ParametersOutOfRangeAreRefused) {
+  const auto expect_refused = [](const SolidPatternParams& pattern) {
+    try {
+      fractured(box({0, 0, 0}, {1, 1, 1}), pattern);
+      ADD_FAILURE() << "it was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::geometry);
+    }
+  };
+  SolidVoronoiParams voronoi;
+  voronoi.count = 0;
+  expect_refused(voronoi);
+  voronoi.sites = {{100, 0, 0}};
+  expect_refused(voronoi);
+  SolidSlicesParams slices;
+  slices.slices = {0.5, 1, 1};
+  expect_refused(slices);
+  slices.slices = {1e5, 1e5, 1};
+  expect_refused(slices);
+  slices = {};
+  slices.offset_variation = 2;
+  expect_refused(slices);
+  slices = {};
+  slices.amplitude = 0.1;
+  slices.wavelength = 0;
+  expect_refused(slices);
+  SolidRadialParams radial;
+  radial.axis = {};
+  expect_refused(radial);
+  SolidBrickParams bricks;
+  bricks.brick.y = 0;
+  expect_refused(bricks);
+}
+
+TEST(SolidContact, ProgressRunsFromNoneToAllAndMayStop) {
+  const ModelSurface surface = as_surface(box({0, 0, 0}, {1, 1, 1}));
+  std::vector<double> told;
+  fracture_solid({}, surface, 2400,
+                 {.seed = 1, .threads = 1, .progress = [&](double p) { told.push_back(p); }});
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_EQ(told.front(), 0);
+  EXPECT_EQ(told.back(), 1);
+  EXPECT_THROW(fracture_solid({}, surface, 2400,
+                              {.seed = 1, .threads = 1, .progress = [](double) { throw 1; }}),
+               int);
+}
+
 TEST(SolidContact, ThreadsDoNotChangeABit) {
   const TriMesh mesh = sphere({0, 0, 0}, 1, 40);
   SolidVoronoiParams pattern;
