@@ -46,8 +46,9 @@ struct SolidStats {
   std::uint64_t cells_inside = 0;   ///< whole: never cut
   std::uint64_t islands_split = 0;  ///< chunks more than cells: a cell's parts apart
   std::uint64_t slivers_merged = 0;
-  std::uint64_t triangles_cut = 0;     ///< of the surface
-  std::uint64_t exact_predicates = 0;  ///< that floating point could not decide
+  std::uint64_t triangles_cut = 0;      ///< of the surface
+  std::uint64_t exact_predicates = 0;   ///< that floating point could not decide
+  double roughness = 0, amplitude = 0;  ///< m, used: less than asked where more is not one to one
 };
 
 /// A pre-fractured solid.
@@ -61,6 +62,7 @@ struct SolidAsset {
   double volume_expected = 0;          ///< of the surface, m³
   SolidStats stats;
   std::string chunk_name(std::uint32_t chunk) const;  ///< as WallAsset's
+  bool has_rough_faces() const;  ///< whether inner faces stray from their planes
 };
 
 /// Cuts a sound surface into chunks. Throws Error{geometry}, with locations, if it is not a
@@ -71,9 +73,10 @@ SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double 
 
 /// Chunk meshes as renderers want them: float32, vertices not shared between faces of different
 /// direction or material. Outer faces keep normals, UVs, materials and colours of the surface
-/// (linear in each triangle); inner ones are flat, UVs in metres × 1/uv_scale in their plane.
-/// Positions are the doubles rounded once per shared vertex; a triangle that this leaves without
-/// area is dropped on both sides.
+/// (linear in each triangle); inner ones are flat (rough ones smooth within a face), UVs in metres
+/// × 1/uv_scale in their plane. Positions are the doubles rounded once per shared vertex; where
+/// that makes corners of a triangle one, it is dropped, on both sides: vertices of equal bits taken
+/// as one, chunks stay closed.
 struct SolidMeshes {
   RawVector<float> positions, normals, uvs;  ///< 3, 3, 2 per vertex
   RawVector<float> colours;                  ///< 4 per vertex, linear; empty: the surface has none
