@@ -3,7 +3,8 @@
 include(CMakePackageConfigHelpers)
 
 # The public headers: what a user includes, and what those include. The others may change any time.
-set(sunder_meshing_headers error field lattice parallel random raw_vector region tri_mesh triangulate
+set(sunder_meshing_headers error field lattice model_surface parallel random raw_vector region repair
+                           surface_defects tri_mesh triangulate
                            trig vec)
 set(sunder_fracture_headers asset bonds breaking chunk_mesh cut local_web measure pattern quad_grid
                             recover sites slivers spiderweb support_graph voronoi wall)

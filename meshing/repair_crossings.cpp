@@ -31,11 +31,13 @@ void grow(const TriMesh& mesh, std::vector<bool>& faces) {
     faces[t] = std::ranges::any_of(mesh.triangles[t], [&](std::uint32_t v) { return touched[v]; });
 }
 
-double farthest_new(const Draft& draft, const TriangleTree& tree, double spacing) {
+// Of the triangles from `first` on.
+double farthest_new(const TriMesh& mesh, std::size_t first, const TriangleTree& tree,
+                    double spacing) {
   TriMesh made;
-  made.vertices = draft.surface.mesh.vertices;
-  for (std::size_t t = 0; t < draft.is_new.size(); ++t)
-    if (draft.is_new[t]) made.triangles.push_back(draft.surface.mesh.triangles[t]);
+  made.vertices = mesh.vertices;
+  made.triangles.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                        mesh.triangles.end());
   return farthest(made, tree, spacing);
 }
 
@@ -52,10 +54,11 @@ bool cut_out_crossings(Draft& draft, const TriangleTree& tree, double max_error)
     std::vector<bool> keep = cut;
     keep.flip();
     keep_triangles(attempt, keep);
+    const std::size_t kept = attempt.mesh().triangles.size();
     fill_holes(attempt);
     drop_unused_vertices(attempt);
     if (!diagnose(attempt.mesh(), 1).is_solid() ||
-        farthest_new(attempt, tree, max_error / 2) > max_error)
+        farthest_new(attempt.mesh(), kept, tree, max_error / 2) > max_error)
       continue;
     const auto count = std::count(cut.begin(), cut.end(), true);
     attempt.steps = draft.steps;

@@ -54,7 +54,8 @@ TEST(SampleModels, TheScanIsBrokenInManyWaysAndRepaired) {
   EXPECT_TRUE(r.after.is_solid()) << r.after.text();
   EXPECT_TRUE(diagnose(r.surface).is_solid());
   EXPECT_EQ(euler(r.surface.mesh), 2);
-  for (const std::string& step : r.steps) RecordProperty("step", step);
+  EXPECT_EQ(r.voxel, 0);  // its few folds are cut out: most of it stays as it is
+  EXPECT_NE(r.steps.back().find("cut out with their neighbours"), std::string::npos);
   // Where the scan is whole, it stays: seen from the repaired surface but for the filled holes.
   EXPECT_LT(farthest(scan, TriangleTree(r.surface.mesh), 0.01), 0.1);
 }
