@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "fracture/solid_parts.hpp"
+#include "meshing/parallel.hpp"
+
+namespace sunder {
+namespace {
+
+TriMesh chunk_triangles(const SolidPartition& partition, std::uint32_t chunk) {
+  TriMesh mesh;
+  for (std::uint32_t t = partition.chunk_begin[chunk]; t < partition.chunk_begin[chunk + 1]; ++t) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const std::uint32_t v : partition.triangles[t].corners)
+      mesh.vertices.push_back(partition.vertices[v]);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+// A bond while it is summed up: the normal is that of the areas' sum.
+struct Sum {
+  std::uint32_t a = 0, b = 0;
+  double area = 0;
+  Vec3 moment, vector;
+};
+
+}  // namespace
+
+std::vector<Bond> solid_bonds(const SolidPartition& partition) {
+  std::vector<Sum> faces(partition.faces.size());
+  for (std::uint32_t c = 0; c < partition.chunk_count(); ++c)
+    for (std::uint32_t t = partition.chunk_begin[c]; t < partition.chunk_begin[c + 1]; ++t) {
+      const auto& triangle = partition.triangles[t];
+      if (!triangle.is_inner() || partition.faces[triangle.face()].a != c) continue;
+      const Vec3 p = partition.vertices[triangle.corners[0]],
+                 q = partition.vertices[triangle.corners[1]],
+                 r = partition.vertices[triangle.corners[2]];
+      Sum& sum = faces[triangle.face()];
+      const Vec3 vector = 0.5 * cross(q - p, r - p);
+      const double area = length(vector);
+      sum.area += area;
+      sum.moment = sum.moment + (area / 3) * (p + q + r);
+      sum.vector = sum.vector + vector;
+    }
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto& face = partition.faces[f];
+    faces[f].a = std::min(face.a, face.b);
+    faces[f].b = std::max(face.a, face.b);
+    if (face.a > face.b) faces[f].vector = -1.0 * faces[f].vector;
+  }
+  std::ranges::stable_sort(faces, {}, [](const Sum& s) { return std::pair(s.a, s.b); });
+  std::vector<Bond> bonds;
+  for (std::size_t f = 0; f < faces.size();) {
+    Sum sum = faces[f];
+    for (++f; f < faces.size() && faces[f].a == sum.a && faces[f].b == sum.b; ++f) {
+      sum.area += faces[f].area;
+      sum.moment = sum.moment + faces[f].moment;
+      sum.vector = sum.vector + faces[f].vector;
+    }
+    const double size = length(sum.vector);
+    if (!(sum.area > 0)) continue;
+    bonds.push_back({sum.a, sum.b, sum.area, (1 / sum.area) * sum.moment,
+                     size > 0 ? (1 / size) * sum.vector : Vec3{1, 0, 0}});
+  }
+  return bonds;
+}
+
+std::vector<MassProperties> solid_masses(const SolidPartition& partition, int threads) {
+  std::vector<MassProperties> masses(partition.chunk_count());
+  for_each_range(masses.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      masses[c] = mass_properties(chunk_triangles(partition, static_cast<std::uint32_t>(c)));
+  });
+  return masses;
+}
+
+}  // namespace sunder

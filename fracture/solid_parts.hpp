@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "fracture/solid_asset.hpp"
+#include "fracture/solid_cut.hpp"
+
+namespace sunder {
+
+/// Chunks of a cut solid: cells of one label together, parts that do not hang together apart, what
+/// is below a millionth of the mean chunk joined to the neighbour it shares most area with (unless
+/// the two would touch themselves along an edge). Adds to `stats`. `parents`: triangle of the
+/// surface that each triangle of the mesh is part of; empty: itself.
+SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_t> parents,
+                               const SolidComplex& complex, const CutSolid& cut, int threads,
+                               SolidStats& stats);
+
+/// Mass properties of every chunk at density 1, and bonds of all pairs that share faces.
+std::vector<MassProperties> solid_masses(const SolidPartition& partition, int threads);
+std::vector<Bond> solid_bonds(const SolidPartition& partition);
+
+}  // namespace sunder
