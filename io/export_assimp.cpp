@@ -310,6 +310,22 @@ T** release_all(std::vector<std::unique_ptr<T>>& owned) {
   return pointers;
 }
 
+bool shares_vertices(const aiScene& scene) {
+  std::vector<bool> seen;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    seen.assign(mesh.mNumVertices, false);
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
+        const unsigned v = mesh.mFaces[f].mIndices[k];
+        if (seen[v]) return true;
+        seen[v] = true;
+      }
+    }
+  }
+  return false;
+}
+
 // Bonds only for our own formats: in STL and PLY they would be stray points.
 std::unique_ptr<aiScene> make_scene(std::span<const WallView> walls, bool with_bonds) {
   SceneParts parts;
@@ -334,8 +350,8 @@ std::unique_ptr<aiScene> make_scene(std::span<const WallView> walls, bool with_b
   scene->mMeshes = release_all(parts.meshes);
   scene->mNumMaterials = static_cast<unsigned>(parts.materials.size());
   scene->mMaterials = release_all(parts.materials);
-  // Faces of a chunk share vertices; assimp's steps unshare them where they must.
-  scene->mFlags |= AI_SCENE_FLAGS_NON_VERBOSE_FORMAT;
+  // Where faces share vertices assimp's steps unshare them; they fail if told so of others.
+  if (shares_vertices(*scene)) scene->mFlags |= AI_SCENE_FLAGS_NON_VERBOSE_FORMAT;
   return scene;
 }
 
