@@ -37,4 +37,9 @@ struct ModelSurface {
   bool has_uvs = false, has_colours = false;
 };
 
+/// A mesh as a surface of one material, each face with the normal of its plane.
+ModelSurface flat_surface(TriMesh mesh);
+/// Unit normal of a triangle; 0 of one without area.
+Vec3 face_normal(const TriMesh& mesh, std::size_t triangle);
+
 }  // namespace sunder
