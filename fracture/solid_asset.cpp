@@ -86,6 +86,11 @@ std::string SolidAsset::chunk_name(std::uint32_t chunk) const {
   return solid.name + "_chunk_" + number;
 }
 
+bool SolidAsset::has_rough_faces() const {
+  const auto* slices = std::get_if<SolidSlicesParams>(&solid.pattern);
+  return solid.roughness > 0 || (slices && slices->amplitude > 0);
+}
+
 SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double density,
                           const FractureParams& params) {
   check_numbers(solid, surface);

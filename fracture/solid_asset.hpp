@@ -61,6 +61,7 @@ struct SolidAsset {
   double volume_expected = 0;          ///< of the surface, m³
   SolidStats stats;
   std::string chunk_name(std::uint32_t chunk) const;  ///< as WallAsset's
+  bool has_rough_faces() const;  ///< whether inner faces stray from their planes
 };
 
 /// Cuts a sound surface into chunks. Throws Error{geometry}, with locations, if it is not a
@@ -71,9 +72,10 @@ SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double 
 
 /// Chunk meshes as renderers want them: float32, vertices not shared between faces of different
 /// direction or material. Outer faces keep normals, UVs, materials and colours of the surface
-/// (linear in each triangle); inner ones are flat, UVs in metres × 1/uv_scale in their plane.
-/// Positions are the doubles rounded once per shared vertex; a triangle that this leaves without
-/// area is dropped on both sides.
+/// (linear in each triangle); inner ones are flat (rough ones smooth within a face), UVs in metres
+/// × 1/uv_scale in their plane. Positions are the doubles rounded once per shared vertex; where
+/// that makes corners of a triangle one, it is dropped, on both sides: vertices of equal bits taken
+/// as one, chunks stay closed.
 struct SolidMeshes {
   RawVector<float> positions, normals, uvs;  ///< 3, 3, 2 per vertex
   RawVector<float> colours;                  ///< 4 per vertex, linear; empty: the surface has none

@@ -82,12 +82,16 @@ struct SolidComplex {
 /// Fills cell_begin and cell_facets from the facets.
 void link_cells(SolidComplex& complex);
 
-/// Voronoi cells of different sites, |coordinates| <= kHalf; cospherical sites make corners where
+/// Voronoi cells of different sites, |coordinates| <= 2 kHalf; cospherical sites make corners where
 /// more than four cells meet. CGAL's Delaunay triangulation; O(n log n) for sites spread in space.
 SolidComplex voronoi_complex(std::span<const LatticeSite> sites);
 
-/// The arrangement of planes (lattice steps) within twice the bounding box's half size. No four
-/// planes may meet in a point within it; parallel ones are different.
+/// Boxes between planes across x, y and z: ascending coordinates in lattice steps, within ±kHalf.
+/// Cell (i, j, k) is number i + (xs + 1) (j + (ys + 1) k).
+SolidComplex grid_complex(const std::array<std::vector<double>, 3>& planes);
+
+/// The arrangement of planes (lattice steps). Throws Error{geometry} if four of them meet in a
+/// point. O(planes × cells).
 SolidComplex plane_complex(std::span<const SolidComplex::Plane> planes);
 
 }  // namespace sunder

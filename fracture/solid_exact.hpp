@@ -83,8 +83,25 @@ int exact_side(const Corners3& triangle, const TriangleLine& a, const TriangleLi
                const TriangleLine& c);
 int exact_order(const Corners3& s, const Corners3& t, const SolidComplex::Plane& p,
                 const SolidComplex::Plane& q);
-/// Sign of the determinant of three planes' normals and of four planes, exact.
-int exact_corner_side(const SolidComplex::Plane& p, const SolidComplex::Plane& q,
-                      const SolidComplex::Plane& r, const SolidComplex::Plane& s);
+
+/// Value of s where p, q and r meet, and the determinant it is to be divided by.
+template <class T>
+std::array<T, 2> corner_value(const std::array<const SolidComplex::Plane*, 3>& corner,
+                              const SolidComplex::Plane& s) {
+  const auto n = [](const SolidComplex::Plane& p) {
+    return std::array<T, 3>{T(p.n.x), T(p.n.y), T(p.n.z)};
+  };
+  const auto a = n(*corner[0]), b = n(*corner[1]), c = n(*corner[2]);
+  const auto bc = meeting(b, c), ca = meeting(c, a), ab = meeting(a, b);
+  const T det = value_at(a, bc), da(corner[0]->d), db(corner[1]->d), dc(corner[2]->d);
+  T value = T(0.0) - T(s.d) * det;
+  const auto normal = n(s);
+  for (std::size_t k = 0; k < 3; ++k)
+    value = value + normal[k] * (da * bc[k] + db * ca[k] + dc * ab[k]);
+  return {value, det};
+}
+/// Exact sign of their quotient.
+int exact_corner_side(const std::array<const SolidComplex::Plane*, 3>& corner,
+                      const SolidComplex::Plane& s);
 
 }  // namespace sunder

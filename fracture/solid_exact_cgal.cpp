@@ -26,4 +26,10 @@ int exact_order(const Corners3& s, const Corners3& t, const SolidComplex::Plane&
   return sign_of(y[0] * x[1] - x[0] * y[1]) * sign_of(x[1]) * sign_of(y[1]);
 }
 
+int exact_corner_side(const std::array<const SolidComplex::Plane*, 3>& corner,
+                      const SolidComplex::Plane& s) {
+  const auto value = corner_value<Exact>(corner, s);
+  return sign_of(value[0]) * sign_of(value[1]);
+}
+
 }  // namespace sunder

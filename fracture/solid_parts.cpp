@@ -103,7 +103,7 @@ struct Partitioner {
   std::vector<std::uint32_t> polygon_part{};               // per polygon
   std::vector<std::array<std::uint32_t, 2>> facet_part{};  // per facet triangle: in a, in b
   std::vector<double> volumes{};                           // per part
-  Groups groups{0};                                      // of parts
+  Groups groups{0};                                        // of parts
   // Of the cell at work
   std::vector<std::uint32_t> local_of{}, members{};
   struct Side {

@@ -61,10 +61,18 @@ void expect_sound(const SolidAsset& asset, double volume_error = 1e-12) {
   EXPECT_NEAR(volume, asset.volume_expected, volume_error * asset.volume_expected);
 }
 
-SolidAsset voronoi(const TriMesh& mesh, std::int64_t count, std::uint64_t seed = 1) {
+SolidAsset fractured(const TriMesh& mesh, const SolidPatternParams& pattern, std::uint64_t seed = 1,
+                     int threads = 1) {
   SolidModel model;
-  model.pattern = SolidVoronoiParams{.count = count};
-  return fracture_solid(model, test::as_surface(mesh), 2400, {.seed = seed});
+  model.pattern = pattern;
+  return fracture_solid(model, test::as_surface(mesh), 2400,
+                        {.seed = seed, .threads = threads, .progress = {}});
+}
+
+SolidAsset voronoi(const TriMesh& mesh, std::int64_t count, std::uint64_t seed = 1) {
+  SolidVoronoiParams pattern;
+  pattern.count = count;
+  return fractured(mesh, pattern, seed);
 }
 
 TEST(Solid, VoronoiOfEveryShapeIsSound) {
@@ -76,6 +84,49 @@ TEST(Solid, VoronoiOfEveryShapeIsSound) {
         SCOPED_TRACE(testing::Message() << count << " cells, seed " << seed);
         expect_sound(voronoi(shape.mesh, count, seed));
       }
+  }
+}
+
+TEST(Solid, SlicesOfEveryShapeAreSound) {
+  for (const test::Shape& shape : test::shapes()) {
+    SCOPED_TRACE(shape.name);
+    for (const double turn : {0.0, 0.2}) {
+      SCOPED_TRACE(turn);
+      SolidSlicesParams slices;
+      slices.angle_variation = turn;
+      slices.offset_variation = turn;
+      expect_sound(fractured(shape.mesh, slices));
+      slices.slices = {7, 0, 5};
+      expect_sound(fractured(shape.mesh, slices, 2));
+    }
+  }
+}
+
+TEST(Solid, RadialCracksOfEveryShapeAreSound) {
+  for (const test::Shape& shape : test::shapes()) {
+    SCOPED_TRACE(shape.name);
+    SolidRadialParams radial;
+    for (const double variability : {0.0, 0.5}) {
+      radial.variability = variability;
+      radial.radius = 0.6;
+      expect_sound(fractured(shape.mesh, radial));
+      radial.axis = {1, 2, 3};
+      radial.centre = {0.3, 0.2, 0.1};
+      expect_sound(fractured(shape.mesh, radial));
+    }
+  }
+}
+
+TEST(Solid, BricksOfEveryShapeAreSound) {
+  for (const test::Shape& shape : test::shapes()) {
+    SCOPED_TRACE(shape.name);
+    for (const double mortar : {0.0, 0.02}) {
+      SCOPED_TRACE(mortar);
+      SolidBrickParams bricks;
+      bricks.brick = {0.5, 0.25, 0.25};
+      bricks.mortar = mortar;
+      expect_sound(fractured(shape.mesh, bricks));
+    }
   }
 }
 

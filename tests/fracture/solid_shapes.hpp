@@ -43,8 +43,12 @@ inline TriMesh box(Vec3 low, Vec3 size) {
   for (int i = 0; i < 8; ++i)
     mesh.vertices.push_back({low.x + ((i & 1) ? size.x : 0), low.y + ((i & 2) ? size.y : 0),
                              low.z + ((i & 4) ? size.z : 0)});
-  for (const auto& q : {std::array<std::uint32_t, 4>{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}) {
+  for (const auto& q : {std::array<std::uint32_t, 4>{0, 4, 6, 2},
+                        {1, 3, 7, 5},
+                        {0, 1, 5, 4},
+                        {2, 6, 7, 3},
+                        {0, 2, 3, 1},
+                        {4, 5, 7, 6}}) {
     mesh.triangles.push_back({q[0], q[1], q[2]});
     mesh.triangles.push_back({q[0], q[2], q[3]});
   }
@@ -120,7 +124,9 @@ inline TriMesh prism(const std::vector<std::vector<Vec2>>& loops, double height)
   return mesh;
 }
 
-inline TriMesh l_shape() { return prism({{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}}, 1); }
+inline TriMesh l_shape() {
+  return prism({{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}}, 1);
+}
 
 inline std::vector<Vec2> circle(Vec2 centre, double radius, int n, bool clockwise = false) {
   std::vector<Vec2> loop;
@@ -197,10 +203,14 @@ struct Shape {
   TriMesh mesh;
 };
 inline std::vector<Shape> shapes() {
-  return {{"box", box({0, 0, 0}, {1, 1, 1})}, {"sphere", sphere({0, 0, 0}, 1, 16)},
-          {"torus", torus(1, 0.3, 40, 20)},   {"L", l_shape()},
-          {"gear", gear()},                   {"cavity", nested_cavity()},
-          {"two", two_shells()},              {"vase", vase()}};
+  return {{"box", box({0, 0, 0}, {1, 1, 1})},
+          {"sphere", sphere({0, 0, 0}, 1, 16)},
+          {"torus", torus(1, 0.3, 40, 20)},
+          {"L", l_shape()},
+          {"gear", gear()},
+          {"cavity", nested_cavity()},
+          {"two", two_shells()},
+          {"vase", vase()}};
 }
 
 }  // namespace sunder::test
