@@ -65,7 +65,7 @@ void add_pattern_options(CLI::App& app, const std::string& type, PatternOptions&
     forms[key] = form;
     std::string& text = help[key];
     if (!text.empty()) {
-      text += "; " + type;
+      text += "; " + type + (form == KeyForm::triples ? " (X,Y,Z)" : "");
       app.get_option(option_name(key))->description(text);
       continue;
     }

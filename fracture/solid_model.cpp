@@ -13,7 +13,7 @@ constexpr Range kLength{0, 1e6};    // m
 constexpr Range kShare{0, 1};
 constexpr Range kCuts{0, 1000};
 constexpr Range kTilt{0, 45};  // degrees
-constexpr Range kDirection{-1, 1};
+
 constexpr Range kScale{1e-9, 1e9};
 
 }  // namespace
@@ -53,7 +53,7 @@ std::span<const Field<SolidRadialParams>> fields() {
   static const Field<P> table[] = {
       {"centre", &P::centre, "m", "Where the rays meet.", kPlace},
       {"axis", &P::axis, "",
-       "Direction that rays and rings are perpendicular to; any length but 0.", kDirection},
+       "Direction that rays and rings are perpendicular to; any length but 0.", kPlace},
       {"rays", &P::rays, "", "Cuts from the axis outwards.", {2, 1000}},
       {"rings", &P::rings, "", "Cuts around the axis.", {0, 1000}},
       {"radius", &P::radius, "m", "Of the outermost ring.", kSize},

@@ -544,12 +544,15 @@ const char* format_of(const std::filesystem::path& path) {
 }  // namespace
 
 void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path& path) {
-  const char* format = format_of(path);
+  std::string format = format_of(path);
   const bool is_soup = suffix_of(path) == ".stl" || suffix_of(path) == ".ply";
   const std::string name = path.string();
   if (!asset.solids.empty() && !is_soup)
     throw Error(ErrorCode::usage, name + ": solids go through assimp as .stl and .ply only");
   const std::vector<WallView> walls = views_of(asset, path);
+  // assimp 5.2 writes colours of a binary PLY as floats where its header says bytes.
+  const auto has_colours = [](const WallView& wall) { return !wall.colours.empty(); };
+  if (format == "plyb" && std::ranges::any_of(walls, has_colours)) format = "ply";
   try {
     validate(walls);
     const std::unique_ptr<aiScene> scene = make_scene(walls, !is_soup);
@@ -557,7 +560,7 @@ void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path
     register_formats(exporter);
     auto* files = new OutputFiles;
     exporter.SetIOHandler(files);  // owns it
-    const aiReturn result = exporter.Export(scene.get(), format, name);
+    const aiReturn result = exporter.Export(scene.get(), format.c_str(), name);
     if (files->failure.first) std::rethrow_exception(files->failure.first);
     if (result != aiReturn_SUCCESS) throw Error(ErrorCode::output, exporter.GetErrorString());
     files->commit();

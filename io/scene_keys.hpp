@@ -79,7 +79,7 @@ inline constexpr SceneKey kCraterKeys[] = {
      "into the nearest face",
      "",
      "Direction of the depth; any length but 0.",
-     {-1, 1}},
+     kShapePlace},
 };
 
 /// Of the field `material`, whose default is not that of a wall with an asset.

@@ -120,12 +120,12 @@ SolidModel read_solid(const Place& place, const std::vector<Material>& materials
   if (const JsonValue* name = place.value.find("name")) name_at(Place(place, "name", *name));
   const std::string fault = material_fault(materials, solid.material);
   if (!fault.empty()) place_of(place, "material").fail(fault);
+  read_keys(solid, place);
   const Place file(place, "file", *place.value.find("file"));
   solid.file = path_at(file, "model", folder);
   if (!is_import_suffix(suffix_of(solid.file))) {
     file.fail("the model " + describe(file.value) + " is not .obj, .glb, .gltf, .stl or .ply");
   }
-  read_keys(solid, place);
   return solid;
 }
 
