@@ -7,6 +7,7 @@
 
 #include "fracture/solid_parts.hpp"
 #include "fracture/solid_pattern.hpp"
+#include "fracture/solid_warp.hpp"
 #include "meshing/error.hpp"
 #include "meshing/parallel.hpp"
 #include "meshing/random.hpp"
@@ -33,46 +34,154 @@ void check_numbers(const SolidModel& solid, const ModelSurface& surface) {
     throw Error(ErrorCode::geometry, "solid " + solid.name + ": no surface of 1 … 2^31 triangles");
 }
 
-// The frame with a shift of its own for each attempt: the first has none, the others are so small
-// that they change nothing but which side of a plane an exact contact is on.
+// The frame with a shift of its own for each attempt: the first has none, the others move the
+// pattern by a billionth of the solid's size. The last take only exact contacts for contacts.
 SolidFrame shifted(SolidFrame frame, std::uint64_t seed, int attempt) {
   if (attempt == 0) return frame;
-  const double size = 0x1p-18 * std::exp2(2 * attempt - 2);
   const auto part = [&](std::uint64_t axis) {
     const double sign = random_unit(seed, axis, 3) < 0.5 ? -1 : 1;
-    return sign * size *
+    return sign * 0x1p-11 *
            (0.5 + 0.5 * random_unit(seed, axis, static_cast<std::uint64_t>(attempt) + 8));
   };
   frame.shift = {part(0), part(1), part(2)};
+  if (attempt > 4) frame.near = 0;
   return frame;
 }
 
-struct Cut {
-  SolidComplex complex;
-  CutSolid cut;
+// A mesh in the places in which it is cut, and in those that its parts are shown in.
+struct Cutter {
+  const SolidModel& solid;
+  const TriMesh& mesh;
+  const TriMesh& shown;
+  std::uint64_t seed;
+  int threads;
+  SolidComplex complex{};
+
+  CutSolid cut() {
+    constexpr int kAttempts = 8;
+    const InsideTest box(mesh);
+    const SolidFrame frame = make_solid_frame(box.low(), box.high());
+    complex = make_solid_complex(solid.pattern, mesh, frame, seed);
+    for (int attempt = 0;; ++attempt) {
+      const SolidFrame moved = shifted(frame, seed, attempt);
+      std::vector<Vec3> steps;
+      steps.reserve(mesh.vertices.size());
+      for (const Vec3& v : mesh.vertices) steps.push_back(moved.to_steps(v));
+      try {
+        return cut_solid(mesh, shown, steps, moved, complex, threads);
+      } catch (const ExactContact& contact) {
+        if (attempt == kAttempts) refuse(contact);
+      }
+    }
+  }
+
+  [[noreturn]] void refuse(const ExactContact& contact) const {
+    const Vec3 at = shown.vertices[shown.triangles[contact.triangle][0]];
+    std::ostringstream text;
+    text << "solid " << solid.name << ": a triangle without area near (" << at.x << ", " << at.y
+         << ", " << at.z << ") m";
+    throw Error(ErrorCode::geometry, text.str());
+  }
 };
 
-Cut cut_model(const SolidModel& solid, const TriMesh& mesh, std::uint64_t seed, int threads) {
-  constexpr int kAttempts = 8;
-  const InsideTest box(mesh);
-  const SolidFrame frame = make_solid_frame(box.low(), box.high());
-  SolidComplex complex = make_solid_complex(solid.pattern, mesh, frame, seed);
-  for (int attempt = 0;; ++attempt) {
-    const SolidFrame moved = shifted(frame, seed, attempt);
-    std::vector<Vec3> steps;
-    steps.reserve(mesh.vertices.size());
-    for (const Vec3& v : mesh.vertices) steps.push_back(moved.to_steps(v));
+std::uint64_t cut_triangles(const CutSolid& cut) {
+  std::uint64_t count = 0;
+  std::vector<std::uint8_t> seen;
+  for (const auto& p : cut.polygons) {
+    if (p.triangle >= seen.size()) seen.resize(p.triangle + 1);
+    count += seen[p.triangle]++ == 1;
+    seen[p.triangle] = std::min<std::uint8_t>(seen[p.triangle], 2);
+  }
+  return count;
+}
+
+void cut_flat(SolidAsset& asset, std::uint64_t seed, int threads) {
+  const TriMesh& mesh = asset.surface.mesh;
+  Cutter cutter{asset.solid, mesh, mesh, seed, threads};
+  const CutSolid cut = cutter.cut();
+  asset.stats.exact_predicates = cut.exact_predicates;
+  asset.stats.triangles_cut = cut_triangles(cut);
+  asset.partition = partition_solid(mesh, {}, cutter.complex, cut, threads, asset.stats);
+  asset.chunks = solid_masses(asset.partition, threads);
+}
+
+// Cuts the warped solid and moves what comes of it back. False if a chunk is turned inside out.
+bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int threads) {
+  const FineMesh fine = refined(asset.surface.mesh, warp.edge());
+  TriMesh moved = fine.mesh;
+  for_each_range(moved.vertices.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) moved.vertices[v] = warp.warped(moved.vertices[v]);
+  });
+  Cutter cutter{asset.solid, moved, fine.mesh, seed, threads};
+  CutSolid cut = cutter.cut();
+  refine_facets(cut, warp.edge());
+  for_each_range(cut.places.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      cut.places[v] =
+          v < cut.surface_places.size() ? cut.surface_places[v] : warp.unwarped(cut.places[v]);
+  });
+  asset.stats = {};
+  asset.stats.exact_predicates = cut.exact_predicates;
+  asset.stats.triangles_cut = cut_triangles(cut);
+  asset.stats.roughness = warp.roughness();
+  asset.stats.amplitude = warp.amplitude();
+  asset.partition =
+      partition_solid(fine.mesh, fine.parents, cutter.complex, cut, threads, asset.stats);
+  asset.chunks = solid_masses(asset.partition, threads);
+  return std::ranges::all_of(asset.chunks, [](const auto& chunk) { return chunk.volume > 0; });
+}
+
+// The size of a typical chunk.
+double chunk_size(const SolidModel& solid, double volume) {
+  double count = 100;
+  if (const auto* p = std::get_if<SolidVoronoiParams>(&solid.pattern))
+    count = p->sites.empty() ? static_cast<double>(p->count) : static_cast<double>(p->sites.size());
+  if (const auto* p = std::get_if<SolidSlicesParams>(&solid.pattern))
+    count = (p->slices.x + 1) * (p->slices.y + 1) * (p->slices.z + 1);
+  if (const auto* p = std::get_if<SolidRadialParams>(&solid.pattern))
+    count = static_cast<double>(p->rays * (p->rings + 1));
+  if (const auto* p = std::get_if<SolidBrickParams>(&solid.pattern))
+    count = volume / (p->brick.x * p->brick.y * p->brick.z);
+  return std::cbrt(volume / std::max(count, 1.0));
+}
+
+// With as much of the roughness asked for as the solid bears: thin places, whose two sides the
+// fine mesh moves differently, may not bear all of it.
+void cut_asset(SolidAsset& asset, std::uint64_t seed, int threads) {
+  constexpr double kLeastShare = 0.05;
+  const double chunk = chunk_size(asset.solid, asset.volume_expected);
+  for (double share = 1;; share /= 2) {
+    const SolidWarp warp(asset.solid, chunk, share, seed);
+    if (warp.is_none()) return cut_flat(asset, seed, threads);
     try {
-      CutSolid cut = cut_solid(mesh, steps, frame, complex, threads);
-      return {std::move(complex), std::move(cut)};
-    } catch (const ExactContact& contact) {
-      if (attempt < kAttempts) continue;
-      const Vec3 at = mesh.vertices[mesh.triangles[contact.triangle][0]];
-      std::ostringstream text;
-      text << "solid " << solid.name << ": a triangle without area near (" << at.x << ", " << at.y
-           << ", " << at.z << ") m";
-      throw Error(ErrorCode::geometry, text.str());
+      if (cut_rough(asset, warp, seed, threads)) return;
+    } catch (const Error&) {
+      if (share < kLeastShare) throw;
     }
+    if (share < kLeastShare)
+      throw Error(ErrorCode::geometry,
+                  "solid " + asset.solid.name + ": too thin for its roughness; valid is less");
+  }
+}
+
+// The last word on a surface that only looked sound: one that meets itself can pass unseen where no
+// crack runs through the place.
+void verify(const SolidAsset& asset) {
+  constexpr double kRounding = 1e-9;
+  double sum = 0;
+  for (const auto& chunk : asset.chunks) {
+    sum += chunk.volume;
+    if (chunk.volume >= -kRounding * asset.volume_expected) continue;
+    std::ostringstream text;
+    text << "solid " << asset.solid.name << ": the surface faces inwards near (" << chunk.centroid.x
+         << ", " << chunk.centroid.y << ", " << chunk.centroid.z << ") m";
+    throw Error(ErrorCode::geometry, text.str());
+  }
+  if (!(std::abs(sum - asset.volume_expected) <= kRounding * asset.volume_expected)) {
+    std::ostringstream text;
+    text << "solid " << asset.solid.name << ": its chunks fill " << sum << " m³ of "
+         << asset.volume_expected << " m³; valid is a closed surface that does not meet itself";
+    throw Error(ErrorCode::geometry, text.str());
   }
 }
 
@@ -102,10 +211,8 @@ SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double 
   asset.volume_expected = mass_properties(mesh).volume;
   if (!(asset.volume_expected > 0))
     throw Error(ErrorCode::geometry, "solid " + solid.name + ": the surface faces inwards");
-  const Cut cut = cut_model(solid, mesh, solid_seed(params.seed, solid.name), params.threads);
-  asset.stats.exact_predicates = cut.cut.exact_predicates;
-  asset.partition = partition_solid(mesh, {}, cut.complex, cut.cut, params.threads, asset.stats);
-  asset.chunks = solid_masses(asset.partition, params.threads);
+  cut_asset(asset, solid_seed(params.seed, solid.name), params.threads);
+  verify(asset);
   asset.bonds = solid_bonds(asset.partition);
   return asset;
 }

@@ -46,8 +46,9 @@ struct SolidStats {
   std::uint64_t cells_inside = 0;   ///< whole: never cut
   std::uint64_t islands_split = 0;  ///< chunks more than cells: a cell's parts apart
   std::uint64_t slivers_merged = 0;
-  std::uint64_t triangles_cut = 0;     ///< of the surface
-  std::uint64_t exact_predicates = 0;  ///< that floating point could not decide
+  std::uint64_t triangles_cut = 0;      ///< of the surface
+  std::uint64_t exact_predicates = 0;   ///< that floating point could not decide
+  double roughness = 0, amplitude = 0;  ///< m, used: less than asked where more is not one to one
 };
 
 /// A pre-fractured solid.

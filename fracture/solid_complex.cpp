@@ -11,7 +11,9 @@ SolidFrame make_solid_frame(Vec3 low, Vec3 high) {
   const double half = std::max({size.x, size.y, size.z}) / 2;
   SolidFrame frame;
   frame.step = std::exp2(std::ceil(std::log2(half * (1 + 0x1p-20) / SolidFrame::kHalf)));
-  frame.centre = low + 0.5 * size;
+  const auto on_lattice = [&](double v) { return std::round(v / frame.step) * frame.step; };
+  const Vec3 middle = low + 0.5 * size;
+  frame.centre = {on_lattice(middle.x), on_lattice(middle.y), on_lattice(middle.z)};
   return frame;
 }
 

@@ -19,17 +19,19 @@ struct LatticeSite {
 
 /// The frame in which a solid's pattern is decided: `centre + step · p` metres, step a power of
 /// two, the solid's bounding box within ±kHalf in every axis. Everything that is computed in it is
-/// moved by `shift` first (steps): a millionth of a step when the solid has corners or edges
-/// exactly on the pattern's planes, else 0.
+/// moved by `shift` first (steps): some thousandth of a step when the solid has corners or edges on
+/// the pattern's planes or within `near` of them, else 0.
 struct SolidFrame {
   static constexpr double kHalf = 0x1p22;
   Vec3 centre;
   double step = 1;
   Vec3 shift;
+  double near = 0x1p-20;  ///< steps
   Vec3 to_steps(Vec3 metres) const { return (1 / step) * (metres - centre) + shift; }
-  Vec3 to_metres(Vec3 steps) const { return centre + step * steps; }
+  Vec3 to_metres(Vec3 steps) const { return centre + step * (steps - shift); }
 };
-/// The frame of a box; its sizes are finite, one above 0.
+/// The frame of a box; its sizes are finite, one above 0. Its points are whole numbers of steps
+/// from the origin.
 SolidFrame make_solid_frame(Vec3 low, Vec3 high);
 
 /// Space cut into convex cells, face to face: a facet is a whole face of both its cells, an edge

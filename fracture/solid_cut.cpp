@@ -73,6 +73,7 @@ struct ClipLine {
   TriangleLine line;
   std::uint32_t facet = kNone;
   Homogeneous values;
+  double nearest = 0;  // value that is near_ away from a plane
 };
 struct ClipCorner {
   std::uint32_t line = 0;  // that starts here
@@ -85,6 +86,7 @@ struct Clipper {
   std::span<const Vec3> steps;
   const SolidComplex& complex;
   const MeshEdges& edges;
+  double near;                      // steps from a plane that count as on it
   std::vector<std::uint32_t> seen;  // per cell: triangle + 1 that met it last
   std::vector<std::uint32_t> queue;
   std::vector<ClipLine> lines;
@@ -94,15 +96,18 @@ struct Clipper {
   Corners3 at;
   std::vector<CutSolid::Polygon> polygons;
   std::vector<CutVertex> symbols;
-  std::vector<Vec3> places;  // of face_edge symbols
+  std::vector<Vec2> shares;  // where symbols are, along the triangle's two first edges
   std::vector<std::uint32_t> sides;
   std::uint64_t exact_predicates = 0;
 
-  Clipper(const TriMesh& m, std::span<const Vec3> s, const SolidComplex& c, const MeshEdges& e)
-      : mesh(m), steps(s), complex(c), edges(e), seen(c.cell_count) {}
+  Clipper(const TriMesh& m, std::span<const Vec3> s, const SolidComplex& c, const MeshEdges& e,
+          double n)
+      : mesh(m), steps(s), complex(c), edges(e), near(n), seen(c.cell_count) {}
 
   int side(const ClipCorner& corner, const TriangleLine& before, const ClipLine& line) {
     const Bounded value = value_at(corner.place, line.values);
+    const double weight = corner.place[0].value + corner.place[1].value + corner.place[2].value;
+    if (std::abs(value.value) < line.nearest * weight) throw ExactContact{triangle};
     if (value.is_certain()) return value.value > 0 ? 1 : -1;
     ++exact_predicates;
     const int sign = exact_side(at, before, lines[corner.line].line, line.line);
@@ -142,7 +147,7 @@ struct Clipper {
   void start_polygon() {
     lines.clear();
     corners.clear();
-    for (int k = 0; k < 3; ++k) lines.push_back({{k}, kNone, line_values<Bounded>(at, {k})});
+    for (int k = 0; k < 3; ++k) lines.push_back({{k}, kNone, line_values<Bounded>(at, {k}), 0});
     // Corner 0 lies between the edges opposite 1 and 2.
     for (const std::uint32_t k : {2u, 0u, 1u})
       corners.push_back({k, meeting(lines[(k + 2) % 3].values, lines[k].values)});
@@ -151,10 +156,11 @@ struct Clipper {
   // False when nothing of the triangle is inside.
   bool clip(std::uint32_t f) {
     const auto& facet = complex.facets[f];
-    ClipLine cutter{{-1, &facet.plane, facet.a == cell ? -1.0 : 1.0}, f, {}};
+    ClipLine cutter{{-1, &facet.plane, facet.a == cell ? -1.0 : 1.0}, f, {}, 0};
     cutter.values = line_values<Bounded>(at, cutter.line);
     if (std::ranges::all_of(cutter.values, [](Bounded v) { return v.value > 0 && v.is_certain(); }))
       return true;
+    if (near > 0) cutter.nearest = near * length(facet.plane.n);
     const std::size_t n = corners.size();
     signs.resize(n);
     std::size_t inside = 0;
@@ -200,19 +206,14 @@ struct Clipper {
 
   void emit() {
     const auto begin = static_cast<std::uint32_t>(symbols.size());
-    const auto& t = mesh.triangles[triangle];
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const ClipCorner& corner = corners[k];
       const ClipLine& before = lines[corners[(k + corners.size() - 1) % corners.size()].line];
       const ClipLine& after = lines[corner.line];
       symbols.push_back(symbol(before, after));
       sides.push_back(after.facet);
-      const double b0 = corner.place[0].value, b1 = corner.place[1].value,
-                   b2 = corner.place[2].value;
-      const double w = b0 + b1 + b2;
-      const Vec3 o = mesh.vertices[t[0]];
-      places.push_back(o + (b1 / w) * (mesh.vertices[t[1]] - o) +
-                       (b2 / w) * (mesh.vertices[t[2]] - o));
+      const double w = corner.place[0].value + corner.place[1].value + corner.place[2].value;
+      shares.push_back({corner.place[1].value / w, corner.place[2].value / w});
       if (after.facet == kNone) continue;
       const std::uint32_t next = complex.across(after.facet, cell);
       if (seen[next] == triangle + 1) continue;
@@ -262,26 +263,30 @@ struct VertexTable {
   }
 };
 
-Vec3 place_of(const CutVertex& v, Vec3 found, const TriMesh& mesh, std::span<const Vec3> steps,
+Vec3 place_of(const CutVertex& v, Vec2 share, const TriMesh& mesh, std::span<const Vec3> steps,
               const SolidComplex& complex, const MeshEdges& edges) {
   if (v.kind == CutVertex::Kind::corner) return mesh.vertices[v.a];
-  if (v.kind == CutVertex::Kind::face_edge) return found;
+  if (v.kind == CutVertex::Kind::face_edge) {
+    const auto& t = mesh.triangles[v.a];
+    const Vec3 o = mesh.vertices[t[0]];
+    return o + share.x * (mesh.vertices[t[1]] - o) + share.y * (mesh.vertices[t[2]] - o);
+  }
   const auto [from, to] = edges.ends[v.a];
   const double p = plane_value<double>(complex.facets[v.b].plane, steps[from]);
   const double q = plane_value<double>(complex.facets[v.b].plane, steps[to]);
-  const double share = std::clamp(p / (p - q), 0.0, 1.0);
-  return mesh.vertices[from] + share * (mesh.vertices[to] - mesh.vertices[from]);
+  const double part = std::clamp(p / (p - q), 0.0, 1.0);
+  return mesh.vertices[from] + part * (mesh.vertices[to] - mesh.vertices[from]);
 }
 
 }  // namespace
 
-CutSolid cut_surface(const TriMesh& mesh, std::span<const Vec3> steps, const SolidFrame&,
-                     const SolidComplex& complex, int threads) {
+CutSolid cut_surface(const TriMesh& mesh, const TriMesh& shown, std::span<const Vec3> steps,
+                     const SolidFrame& frame, const SolidComplex& complex, int threads) {
   const MeshEdges edges(mesh);
   std::vector<std::pair<std::size_t, std::unique_ptr<Clipper>>> parts;
   std::mutex lock;
   for_each_range(mesh.triangles.size(), threads, [&](std::size_t begin, std::size_t end) {
-    auto clipper = std::make_unique<Clipper>(mesh, steps, complex, edges);
+    auto clipper = std::make_unique<Clipper>(mesh, steps, complex, edges, frame.near);
     clipper->run(begin, end);
     const std::scoped_lock guard(lock);
     parts.emplace_back(begin, std::move(clipper));
@@ -298,8 +303,11 @@ CutSolid cut_surface(const TriMesh& mesh, std::span<const Vec3> steps, const Sol
       if (slot == kNone) {
         slot = static_cast<std::uint32_t>(cut.vertices.size());
         cut.vertices.push_back(part->symbols[k]);
-        cut.places.push_back(
-            place_of(part->symbols[k], part->places[k], mesh, steps, complex, edges));
+        const auto place = [&](const TriMesh& m) {
+          return place_of(part->symbols[k], part->shares[k], m, steps, complex, edges);
+        };
+        cut.places.push_back(place(mesh));
+        if (&shown != &mesh) cut.surface_places.push_back(place(shown));
       }
       cut.polygon_vertices.push_back(slot);
     }
@@ -314,9 +322,9 @@ CutSolid cut_surface(const TriMesh& mesh, std::span<const Vec3> steps, const Sol
   return cut;
 }
 
-CutSolid cut_solid(const TriMesh& mesh, std::span<const Vec3> steps, const SolidFrame& frame,
-                   const SolidComplex& complex, int threads) {
-  CutSolid cut = cut_surface(mesh, steps, frame, complex, threads);
+CutSolid cut_solid(const TriMesh& mesh, const TriMesh& shown, std::span<const Vec3> steps,
+                   const SolidFrame& frame, const SolidComplex& complex, int threads) {
+  CutSolid cut = cut_surface(mesh, shown, steps, frame, complex, threads);
   cut_facets(mesh, steps, frame, complex, threads, cut);
   return cut;
 }

@@ -34,7 +34,8 @@ struct CutSolid {
   };
   static constexpr std::uint32_t kOutline = ~std::uint32_t{0};
   std::vector<CutVertex> vertices;
-  std::vector<Vec3> places;  ///< m
+  std::vector<Vec3> places;          ///< m
+  std::vector<Vec3> surface_places;  ///< of vertices on the surface, on `shown` (m)
   std::vector<Polygon> polygons;
   std::vector<std::uint32_t> polygon_vertices, polygon_lines;
   /// Triangles of facet f's part inside, counter-clockwise seen from its cell b, are
@@ -51,13 +52,14 @@ struct ExactContact {
 };
 
 /// Cuts a closed mesh that does not meet itself. `steps`: its vertices in the complex' frame.
+/// `shown`: a mesh of the same triangles with its vertices in other places, or the mesh itself.
 /// Throws ExactContact; Error{geometry}, with a place, if the mesh turns out not to bound a solid.
-CutSolid cut_solid(const TriMesh& mesh, std::span<const Vec3> steps, const SolidFrame& frame,
-                   const SolidComplex& complex, int threads);
+CutSolid cut_solid(const TriMesh& mesh, const TriMesh& shown, std::span<const Vec3> steps,
+                   const SolidFrame& frame, const SolidComplex& complex, int threads);
 
 /// The steps of it: polygons and vertices on the surface; then the facets' parts inside.
-CutSolid cut_surface(const TriMesh& mesh, std::span<const Vec3> steps, const SolidFrame& frame,
-                     const SolidComplex& complex, int threads);
+CutSolid cut_surface(const TriMesh& mesh, const TriMesh& shown, std::span<const Vec3> steps,
+                     const SolidFrame& frame, const SolidComplex& complex, int threads);
 void cut_facets(const TriMesh& mesh, std::span<const Vec3> steps, const SolidFrame& frame,
                 const SolidComplex& complex, int threads, CutSolid& cut);
 

@@ -353,6 +353,21 @@ struct Partitioner {
   }
 };
 
+// Whether no chunk meets itself along an edge.
+bool is_manifold(const SolidPartition& partition) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::uint32_t c = 0; c < partition.chunk_count(); ++c) {
+    edges.clear();
+    for (std::uint32_t t = partition.chunk_begin[c]; t < partition.chunk_begin[c + 1]; ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        edges.push_back(
+            {partition.triangles[t].corners[k], partition.triangles[t].corners[(k + 1) % 3]});
+    std::ranges::sort(edges);
+    if (std::ranges::adjacent_find(edges) != edges.end()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_t> parents,
@@ -366,6 +381,11 @@ SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_
   stats.islands_split += work.volumes.size() - (complex.cell_count - stats.cells_outside);
   work.join_labels();
   work.join_slivers();
+  SolidPartition result = work.emit();
+  if (stats.slivers_merged == 0 || is_manifold(result)) return result;
+  stats.slivers_merged = 0;
+  work.groups = Groups(work.volumes.size());
+  work.join_labels();
   return work.emit();
 }
 

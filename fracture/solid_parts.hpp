@@ -7,8 +7,8 @@
 namespace sunder {
 
 /// Chunks of a cut solid: cells of one label together, parts that do not hang together apart, what
-/// is below a millionth of the mean chunk joined to the neighbour it shares most area with (unless
-/// the two would touch themselves along an edge). Adds to `stats`. `parents`: triangle of the
+/// is below a millionth of the mean chunk joined to the neighbour it shares most area with (none,
+/// if that made a chunk meet itself along an edge). Adds to `stats`. `parents`: triangle of the
 /// surface that each triangle of the mesh is part of; empty: itself.
 SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_t> parents,
                                const SolidComplex& complex, const CutSolid& cut, int threads,

@@ -54,12 +54,12 @@ std::array<Vec3, 2> across(Vec3 n) {
 }
 
 // Planes across the axes at coordinates in metres: those within the solid, ascending, different.
-// A plane in which faces of the solid lie is moved by 2^-12 steps to the side on which they have
+// A plane in which faces of the solid lie is moved by 2^-9 steps to the side on which they have
 // nothing behind them: otherwise a cell on that side would get skins of no thickness.
 std::array<std::vector<double>, 3> planes_within(std::array<std::vector<double>, 3> metres,
                                                  const TriMesh& mesh, const InsideTest& box,
                                                  const SolidFrame& frame) {
-  constexpr double kSame = 0x1p-8, kMove = 0x1p-12;  // steps
+  constexpr double kSame = 0x1p-6, kMove = 0x1p-9;  // steps
   for (std::size_t a = 0; a < 3; ++a) {
     const auto steps = [&](double v) { return (v - part(frame.centre, a)) / frame.step; };
     std::vector<double> kept;

@@ -308,8 +308,6 @@ void fill_run(Json& properties) {
   fill(properties["projectiles"], list_of(object_of(kProjectileKeys)));
   fill(properties["solves"], object_of(kSolveKeys));
   properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
-  fill(properties["repair"], list_of(object_of(kRepairKeys)));
-  properties["repair"]["items"]["properties"]["steps"]["items"] = {{"type", "string"}};
   fill(properties["warnings"], list_of({{"type", "string"}}));
   fill(properties["time"], seconds());
 }
@@ -331,6 +329,8 @@ std::string report_schema() {
     properties[key]["type"] = {"number", "null"};
   }
   properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
+  fill(properties["repair"], list_of(object_of(kRepairKeys)));
+  properties["repair"]["items"]["properties"]["steps"]["items"] = {{"type", "string"}};
   properties["time"] = {{"type", "object"},
                         {"description", "What each step took, keys end in _s. Unit: s."}};
   fill(properties["time"], seconds());

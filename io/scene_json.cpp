@@ -197,6 +197,9 @@ Scene read_tree(const Place& place, const SceneFolder& folder) {
   }
   if (scene.walls.empty() && scene.solids.empty() && !place.value.find("building")) {
     const std::string example = "for example \"walls\": [{\"outline\": {\"rect\": [6, 3]}}]";
+    if (const JsonValue* solids = place.value.find("solids")) {
+      Place(place, "solids", *solids).fail("no wall, solid or building, " + example);
+    }
     if (walls) Place(place, "walls", *walls).fail("no wall, solid or building, " + example);
     place.fail("the key \"walls\" is missing, " + example);
   }

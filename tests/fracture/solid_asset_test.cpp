@@ -4,70 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 
 #include "fracture/solid_shapes.hpp"
-#include "meshing/error.hpp"
+#include "fracture/solid_sound.hpp"
 
-namespace sunder {
+namespace sunder::test {
 namespace {
-
-TriMesh chunk_of(const SolidPartition& partition, std::uint32_t chunk) {
-  TriMesh mesh;
-  std::map<std::uint32_t, std::uint32_t> local;
-  for (std::uint32_t t = partition.chunk_begin[chunk]; t < partition.chunk_begin[chunk + 1]; ++t) {
-    auto& triangle = mesh.triangles.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = partition.triangles[t].corners[k];
-      const auto [it, added] =
-          local.try_emplace(v, static_cast<std::uint32_t>(mesh.vertices.size()));
-      if (added) mesh.vertices.push_back(partition.vertices[v]);
-      triangle[k] = it->second;
-    }
-  }
-  return mesh;
-}
-
-// All that is promised of any asset.
-void expect_sound(const SolidAsset& asset, double volume_error = 1e-12) {
-  const SolidPartition& p = asset.partition;
-  double volume = 0;
-  std::map<std::array<std::uint32_t, 4>, int> inner;  // sorted corners and face
-  double inner_area = 0, bond_area = 0;
-  for (std::uint32_t c = 0; c < p.chunk_count(); ++c) {
-    const TriMesh mesh = chunk_of(p, c);
-    MeshDefects defects = check(mesh);
-    EXPECT_EQ(defects.open_edges, 0u) << "chunk " << c;
-    EXPECT_EQ(defects.nonmanifold_edges, 0u) << "chunk " << c;
-    EXPECT_EQ(defects.degenerate_triangles, 0u) << "chunk " << c;
-    EXPECT_FALSE(defects.inside_out) << "chunk " << c << ", " << asset.chunks[c].volume << " m³";
-    volume += asset.chunks[c].volume;
-    for (std::uint32_t t = p.chunk_begin[c]; t < p.chunk_begin[c + 1]; ++t) {
-      const auto& triangle = p.triangles[t];
-      if (!triangle.is_inner()) continue;
-      const auto& face = p.faces[triangle.face()];
-      EXPECT_TRUE(face.a == c || face.b == c);
-      auto corners = triangle.corners;
-      std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
-      if (face.b == c) std::swap(corners[1], corners[2]);
-      inner[{corners[0], corners[1], corners[2], triangle.face()}] += face.a == c ? 1 : 2;
-      const Vec3 a = p.vertices[corners[0]];
-      inner_area += length(cross(p.vertices[corners[1]] - a, p.vertices[corners[2]] - a)) / 2;
-    }
-  }
-  for (const auto& [corners, sides] : inner) EXPECT_EQ(sides, 3);
-  for (const Bond& bond : asset.bonds) bond_area += bond.area;
-  EXPECT_NEAR(bond_area, inner_area / 2, 1e-12 * (inner_area + 1e-300));
-  EXPECT_NEAR(volume, asset.volume_expected, volume_error * asset.volume_expected);
-}
-
-SolidAsset fractured(const TriMesh& mesh, const SolidPatternParams& pattern, std::uint64_t seed = 1,
-                     int threads = 1) {
-  SolidModel model;
-  model.pattern = pattern;
-  return fracture_solid(model, test::as_surface(mesh), 2400,
-                        {.seed = seed, .threads = threads, .progress = {}});
-}
 
 SolidAsset voronoi(const TriMesh& mesh, std::int64_t count, std::uint64_t seed = 1) {
   SolidVoronoiParams pattern;
@@ -76,7 +18,7 @@ SolidAsset voronoi(const TriMesh& mesh, std::int64_t count, std::uint64_t seed =
 }
 
 TEST(Solid, VoronoiOfEveryShapeIsSound) {
-  for (const test::Shape& shape : test::shapes()) {
+  for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     ASSERT_EQ(check(shape.mesh), MeshDefects{});
     for (const std::uint64_t seed : {1, 2, 3})
@@ -88,7 +30,7 @@ TEST(Solid, VoronoiOfEveryShapeIsSound) {
 }
 
 TEST(Solid, SlicesOfEveryShapeAreSound) {
-  for (const test::Shape& shape : test::shapes()) {
+  for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     for (const double turn : {0.0, 0.2}) {
       SCOPED_TRACE(turn);
@@ -103,7 +45,7 @@ TEST(Solid, SlicesOfEveryShapeAreSound) {
 }
 
 TEST(Solid, RadialCracksOfEveryShapeAreSound) {
-  for (const test::Shape& shape : test::shapes()) {
+  for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     SolidRadialParams radial;
     for (const double variability : {0.0, 0.5}) {
@@ -118,7 +60,7 @@ TEST(Solid, RadialCracksOfEveryShapeAreSound) {
 }
 
 TEST(Solid, BricksOfEveryShapeAreSound) {
-  for (const test::Shape& shape : test::shapes()) {
+  for (const Shape& shape : shapes()) {
     SCOPED_TRACE(shape.name);
     for (const double mortar : {0.0, 0.02}) {
       SCOPED_TRACE(mortar);
@@ -130,5 +72,40 @@ TEST(Solid, BricksOfEveryShapeAreSound) {
   }
 }
 
+TEST(Solid, RoughFacesAreSoundAndMatch) {
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    SolidModel model;
+    SolidVoronoiParams pattern;
+    pattern.count = 6;
+    model.pattern = pattern;
+    model.roughness = 0.01;
+    model.roughness_size = std::string_view(shape.name) == "vase" ? 0.05 : 0.4;
+    const SolidAsset asset = fracture_solid(model, as_surface(shape.mesh), 2400, {});
+    expect_sound(asset);
+    EXPECT_GT(asset.stats.roughness, 0.004);
+  }
+}
+
+TEST(Solid, WavySlicesAreSoundAndTouchTheirAmplitude) {
+  SolidModel model;
+  SolidSlicesParams slices;
+  slices.slices = {0, 1, 0};
+  slices.amplitude = 0.1;
+  slices.wavelength = 0.5;
+  model.pattern = slices;
+  const SolidAsset asset = fracture_solid(model, as_surface(box({0, 0, 0}, {1, 1, 1})), 2400, {});
+  expect_sound(asset);
+  ASSERT_EQ(asset.partition.chunk_count(), 2u);
+  double low = 1, high = 0;
+  for (const auto& t : asset.partition.triangles)
+    if (t.is_inner())
+      for (const std::uint32_t v : t.corners) {
+        low = std::min(low, asset.partition.vertices[v].y);
+        high = std::max(high, asset.partition.vertices[v].y);
+      }
+  EXPECT_NEAR(high - low, 0.2, 0.02);
+}
+
 }  // namespace
-}  // namespace sunder
+}  // namespace sunder::test
