@@ -21,6 +21,8 @@ using Place = std::array<std::int32_t, 3>;
 
 // No value is nearer to 0, so that no vertex of the surface falls on a lattice point.
 constexpr float kLeast = 1e-3f;
+// What is nearer lies on the surface, where winding numbers jump.
+constexpr float kOnSurface = 1e-4f;
 
 float off_zero(float value) {
   return value < 0 ? std::min(value, -kLeast) : std::max(value, kLeast);
@@ -56,6 +58,18 @@ void for_neighbours(const std::vector<VoxelValue>& values, Place step, Visit vis
   }
 }
 
+// Whether p, or with `about` > 0 a point of eight that far beside it along each axis, is inside. A
+// point on a solid's surface is inside by that, so that edges along the lattice stay sharp; one on
+// a sheet is not.
+bool is_inside(const TriangleTree& tree, Vec3 p, double about) {
+  if (about == 0) return tree.winding_number(p) > 0.5;
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 beside{c & 1 ? about : -about, c & 2 ? about : -about, c & 4 ? about : -about};
+    if (tree.winding_number(p + beside) > 0.5) return true;
+  }
+  return false;
+}
+
 // Gives unsigned distances the sign of their side.
 void set_signs(LevelSet& set, const TriMesh& closed) {
   ParitySets sides(set.values.size());
@@ -75,7 +89,8 @@ void set_signs(LevelSet& set, const TriMesh& closed) {
   std::vector<bool> inside(set.values.size());
   for (std::uint32_t i = 0; i < set.values.size(); ++i)
     if (farthest[i] != ~0u)
-      inside[i] = tree.winding_number(set.place(set.values[farthest[i]].at)) > 0.5;
+      inside[i] = is_inside(tree, set.place(set.values[farthest[i]].at),
+                            set.values[farthest[i]].value > kOnSurface ? 0 : set.voxel / 8);
   for (std::uint32_t i = 0; i < set.values.size(); ++i) {
     float& value = set.values[i].value;
     value = off_zero(inside[sides.find(i).root] ? -std::max(value, kLeast) : value);

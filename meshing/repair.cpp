@@ -64,9 +64,8 @@ double remake(Draft& draft, double max_error) {
   double voxel = kVoxelShare * max_error;
   for (int attempt = 1;; ++attempt, voxel /= 2) {
     TriMesh made = solid_surface(level_set(closed, voxel));
-    const bool is_near = !made.triangles.empty() &&
-                         farthest(made, tree, max_error / 2) <= max_error &&
-                         diagnose(made, 1).is_solid();
+    const bool is_near =
+        !made.triangles.empty() && farthest(made, tree, max_error / 2) <= max_error;
     if (!is_near && attempt < kMostTries) continue;
     draft.surface.mesh = std::move(made);
     break;

@@ -139,37 +139,48 @@ void TriangleTree::summarise(Node& node) const {
   node.radius = length(reach);
 }
 
+double TriangleTree::distance2(Vec3 p, std::uint32_t triangle, std::array<double, 3>& w) const {
+  const Vec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
+  w = nearest_weights(p, a, b, c);
+  const Vec3 d = p - (a + w[1] * (b - a) + w[2] * (c - a));
+  return dot(d, d);
+}
+
 TriangleTree::Nearest TriangleTree::nearest(Vec3 p) const {
   assert(!nodes_.empty());
   Nearest best;
   double best2 = kInfinity;
-  std::vector<std::pair<double, std::uint32_t>> stack{{nodes_[0].box.distance2(p), 0}};
-  while (!stack.empty()) {
-    const auto [bound, index] = stack.back();
-    stack.pop_back();
+  // A branch leaves one box behind: halves make the tree less than 40 deep.
+  std::array<std::pair<double, std::uint32_t>, 64> stack;
+  std::size_t size = 0;
+  stack[size++] = {nodes_[0].box.distance2(p), 0};
+  while (size > 0) {
+    const auto [bound, index] = stack[--size];
     if (bound > best2) continue;
     const Node& node = nodes_[index];
     if (node.left == 0) {
       for (std::uint32_t i = node.begin; i < node.end; ++i) {
-        const std::uint32_t t = order_[i];
-        const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-        const auto w = nearest_weights(p, a, b, c);
-        const Vec3 d = p - (a + w[1] * (b - a) + w[2] * (c - a));
-        const double d2 = dot(d, d);
-        if (std::pair(d2, t) >= std::pair(best2, best.triangle)) continue;
+        std::array<double, 3> weights;
+        const double d2 = distance2(p, order_[i], weights);
+        if (std::pair(d2, order_[i]) >= std::pair(best2, best.triangle)) continue;
         best2 = d2;
-        best = {0, t, w};
+        best = {0, order_[i], weights};
       }
       continue;
     }
     std::pair<double, std::uint32_t> near{nodes_[node.left].box.distance2(p), node.left};
     std::pair<double, std::uint32_t> far{nodes_[node.right].box.distance2(p), node.right};
     if (far < near) std::swap(near, far);
-    stack.push_back(far);
-    stack.push_back(near);
+    stack[size++] = far;
+    stack[size++] = near;
   }
   best.distance = std::sqrt(best2);
   return best;
+}
+
+bool TriangleTree::is_within(Vec3 p, double distance, std::uint32_t triangle) const {
+  std::array<double, 3> weights;
+  return triangle < boxes_.size() && distance2(p, triangle, weights) <= distance * distance;
 }
 
 double TriangleTree::winding_number(Vec3 p) const {
@@ -258,13 +269,18 @@ double farthest(const TriMesh& a, const TriangleTree& b, double spacing) {
   while (samples() > kMostSamples && samples() > 3.5 * static_cast<double>(a.triangles.size()))
     spacing *= 2;
   double most = 0;
+  std::uint32_t last = ~0u;  // the nearest of the last point: mostly enough to rule one out
   for (const auto& t : a.triangles) {
     const Vec3 p = a.vertices[t[0]], q = a.vertices[t[1]], r = a.vertices[t[2]];
     const int n = static_cast<int>(steps_of(t, spacing));
     for (int i = 0; i <= n; ++i)
       for (int k = 0; i + k <= n; ++k) {
         const double u = static_cast<double>(i) / n, v = static_cast<double>(k) / n;
-        most = std::max(most, b.nearest(p + u * (q - p) + v * (r - p)).distance);
+        const Vec3 at = p + u * (q - p) + v * (r - p);
+        if (b.is_within(at, most, last)) continue;
+        const auto nearest = b.nearest(at);
+        last = nearest.triangle;
+        most = std::max(most, nearest.distance);
       }
   }
   return most;

@@ -36,6 +36,9 @@ class TriangleTree {
   /// must not be empty. O(log n) as a rule.
   Nearest nearest(Vec3 p) const;
 
+  /// Whether p is no further than `distance` from one triangle; false if there is no such triangle.
+  bool is_within(Vec3 p, double distance, std::uint32_t triangle) const;
+
   /// How often the surface winds around p (Jacobson et al. 2013): a whole number off a closed
   /// surface. Far parts count as dipoles (Barill et al. 2018), which errs by some hundredths.
   double winding_number(Vec3 p) const;
@@ -55,6 +58,7 @@ class TriangleTree {
   };
   std::uint32_t build(std::uint32_t begin, std::uint32_t end);
   void summarise(Node& node) const;
+  double distance2(Vec3 p, std::uint32_t triangle, std::array<double, 3>& weights) const;
   Vec3 corner(std::uint32_t triangle, int k) const {
     return mesh_->vertices[mesh_->triangles[triangle][static_cast<std::size_t>(k)]];
   }

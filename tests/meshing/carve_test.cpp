@@ -22,7 +22,7 @@ TEST(Carve, ABallTakesASphericalCapOutOfABox) {
   const double r = 0.4, below = 0.15;  // the ball's centre is above the face by r - h
   const double h = r - below, cap = pi * h * h * (3 * r - h) / 3;
   double last = 0;
-  for (const double error : {0.04, 0.02}) {
+  for (const double error : {0.05, 0.025}) {
     const ModelSurface made =
         carve(box, {.centre = {1, 1, 1 + below}, .radius = r, .max_error = error});
     EXPECT_TRUE(diagnose(made).is_solid()) << diagnose(made).text();
@@ -31,7 +31,7 @@ TEST(Carve, ABallTakesASphericalCapOutOfABox) {
     EXPECT_NEAR(volume(made), 4 - cap, edges * error * error / 2);
     last = std::abs(volume(made) - (4 - cap));
   }
-  EXPECT_LT(last, 0.005);
+  EXPECT_LT(last, 0.008);
 }
 
 TEST(Carve, TheCratersFaceIsOnTheBall) {
@@ -80,7 +80,7 @@ TEST(Carve, BadInputIsRefused) {
   ModelSurface box = flat_surface(unit_cube());
   const CarveParams good{.centre = {.5, .5, 1}, .radius = 0.2};
   EXPECT_THROW(carve(box, {.centre = {.5, .5, 1}, .radius = 0}), Error);
-  EXPECT_THROW(carve(box, {.radius = 0.2, .into = {0, 0, -2}}), Error);
+  EXPECT_THROW(carve(box, {.centre = {.5, .5, 1}, .radius = 0.2, .into = {0, 0, -2}}), Error);
   EXPECT_THROW(carve(box, {.centre = {.5, .5, .5}, .radius = 2}), Error);  // nothing is left
   box.mesh.triangles.pop_back();
   EXPECT_THROW(carve(box, good), Error);
