@@ -131,10 +131,6 @@ void check_values(const CLI::App& verb) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
     if (verb == &app) names.push_back(sub->get_name());
-  for (const CLI::Option* option : verb->get_options())
-    if (option->count() > 1 && option->get_items_expected_max() == 1)
-      usage(option->nonpositional() ? option->get_name() + " is given twice"
-                                    : '"' + option->results()[1] + "\" belongs to no option");
   const std::vector<std::string_view> views(names.begin(), names.end());
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
@@ -147,6 +143,10 @@ void check_values(const CLI::App& verb) {
             (near.empty() ? "" : ", did you mean \"" + std::string(near) + "\"?"));
     }
   }
+  for (const CLI::Option* option : verb->get_options())
+    if (option->count() > 1 && option->get_items_expected_max() == 1)
+      usage(option->nonpositional() ? option->get_name() + " is given twice"
+                                    : '"' + option->results()[1] + "\" belongs to no option");
   usage(error.what());
 }
 
