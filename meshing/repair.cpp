@@ -98,6 +98,8 @@ Repair repair(const ModelSurface& surface, const RepairParams& params) {
 
   clean(draft, box, max_error);
   result.after = diagnose(draft.mesh());
+  if (!result.after.is_solid() && cut_out_crossings(draft, tree, max_error))
+    result.after = diagnose(draft.mesh());
   if (!result.after.is_solid() || draft.mesh().triangles.empty()) {
     if (!params.level_set || draft.mesh().triangles.empty())
       give_up(result.after, "by turning, joining and filling");

@@ -45,6 +45,11 @@ void split_vertices(Draft& draft, double apart);
 /// Turns whole shells over that are inside out.
 void turn_shells(Draft& draft);
 void drop_unused_vertices(Draft& draft);
+/// Cuts faces that cross or meet others wrongly out, with up to three rings about them, and fills
+/// the holes; true if the surface is a solid's by that and the new faces are within max_error (m)
+/// of the surface in `tree`. Otherwise nothing is changed: folds and spikes are mended so, bodies
+/// that run through each other are not.
+bool cut_out_crossings(Draft& draft, const TriangleTree& tree, double max_error);
 
 /// Open edges in the direction in which a face beside them would run, as closed loops of vertices.
 std::vector<std::vector<std::uint32_t>> open_loops(const TriMesh& mesh);

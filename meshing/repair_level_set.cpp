@@ -101,7 +101,10 @@ TriMesh closed_by_fans(const TriMesh& mesh) {
 
 TriMesh solid_surface(const LevelSet& set) {
   TriMesh mesh = smooth_surface(set);
-  return diagnose(mesh, 1).is_solid() ? mesh : sound_surface(set);
+  if (diagnose(mesh, 1).is_solid()) return mesh;
+  Draft draft = make_draft(flat_surface(mesh));
+  if (cut_out_crossings(draft, TriangleTree(mesh), set.voxel / 2)) return draft.mesh();
+  return sound_surface(set);
 }
 
 void carry_over(const ModelSurface& given, const TriangleTree& tree, ModelSurface& made,

@@ -7,11 +7,12 @@ namespace sunder {
 
 /// Of the bounding box's diagonal: what max_error = 0 stands for.
 inline constexpr double kErrorShare = 1.0 / 200;
-/// Voxel size as a share of the greatest error: a corner of a cube strays by 0.8 voxels at most.
-inline constexpr double kVoxelShare = 1.0;
+/// Voxel size as a share of the greatest error: a cube's corner strays by a voxel at most
+/// (bench_level_set), sharper ones further.
+inline constexpr double kVoxelShare = 0.8;
 
-/// A sound surface where the level set is 0: the smooth one, or where that meets itself the one by
-/// tetrahedra.
+/// A sound surface where the level set is 0: the smooth one, mended where it meets itself in a few
+/// places, or the one by tetrahedra.
 TriMesh solid_surface(const LevelSet& set);
 
 }  // namespace sunder

@@ -97,42 +97,48 @@ TriangleTree::TriangleTree(const TriMesh& mesh, const std::vector<bool>& keep) :
 
 std::uint32_t TriangleTree::build(std::uint32_t begin, std::uint32_t end) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
-  Node node{kNothing, begin, end, 0, 0, {}, {}, 0};
+  Node node{kNothing, begin, end, 0, 0, {}, {}, 0, 0};
   for (std::uint32_t i = begin; i < end; ++i) {
     grow(node.box, boxes_[order_[i]].low);
     grow(node.box, boxes_[order_[i]].high);
   }
-  summarise(node);
   nodes_.push_back(node);
-  if (end - begin <= kLeafSize) return index;
-  const int axis = longest_axis(node.box);
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  const auto key = [&](std::uint32_t t) {
-    return std::pair(along(boxes_[t].low, axis) + along(boxes_[t].high, axis), t);
-  };
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  const std::uint32_t left = build(begin, middle);
-  const std::uint32_t right = build(middle, end);
-  nodes_[index].left = left;
-  nodes_[index].right = right;
+  if (end - begin > kLeafSize) {
+    const int axis = longest_axis(node.box);
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    const auto key = [&](std::uint32_t t) {
+      return std::pair(along(boxes_[t].low, axis) + along(boxes_[t].high, axis), t);
+    };
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                     [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    node.left = build(begin, middle);
+    node.right = build(middle, end);
+  }
+  summarise(node);
+  nodes_[index] = node;
   return index;
 }
 
+// Area, normal and centre from the node's triangles or its branches.
 void TriangleTree::summarise(Node& node) const {
-  double area_sum = 0;
   Vec3 weighted;
-  for (std::uint32_t i = node.begin; i < node.end; ++i) {
-    const Vec3 a = corner(order_[i], 0), b = corner(order_[i], 1), c = corner(order_[i], 2);
-    const Vec3 n = 0.5 * cross(b - a, c - a);
-    const double area = length(n);
-    node.normal = node.normal + n;
-    weighted =
-        weighted + (area / 3) * ((a - node.box.low) + (b - node.box.low) + (c - node.box.low));
-    area_sum += area;
+  const auto add = [&](double area, Vec3 normal, Vec3 centre) {
+    node.area += area;
+    node.normal = node.normal + normal;
+    weighted = weighted + area * (centre - node.box.low);
+  };
+  if (node.left != 0) {
+    for (const std::uint32_t branch : {node.left, node.right})
+      add(nodes_[branch].area, nodes_[branch].normal, nodes_[branch].centre);
+  } else {
+    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+      const Vec3 a = corner(order_[i], 0), b = corner(order_[i], 1), c = corner(order_[i], 2);
+      const Vec3 n = 0.5 * cross(b - a, c - a);
+      add(length(n), n, a + (1.0 / 3) * ((b - a) + (c - a)));
+    }
   }
   const Vec3 middle = 0.5 * (node.box.high - node.box.low);
-  node.centre = node.box.low + (area_sum > 0 ? (1 / area_sum) * weighted : middle);
+  node.centre = node.box.low + (node.area > 0 ? (1 / node.area) * weighted : middle);
   const Vec3 to_low = node.centre - node.box.low, to_high = node.box.high - node.centre;
   const Vec3 reach{std::max(to_low.x, to_high.x), std::max(to_low.y, to_high.y),
                    std::max(to_low.z, to_high.z)};

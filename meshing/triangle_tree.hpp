@@ -54,7 +54,7 @@ class TriangleTree {
     std::uint32_t begin = 0, end = 0;   // of order_
     std::uint32_t left = 0, right = 0;  // 0: a leaf
     Vec3 centre, normal;                // area-weighted centre; sum of area normals, m²
-    double radius = 0;                  // of all corners about the centre
+    double radius = 0, area = 0;        // of all corners about the centre; m²
   };
   std::uint32_t build(std::uint32_t begin, std::uint32_t end);
   void summarise(Node& node) const;

@@ -20,7 +20,7 @@ double volume(const TriMesh& mesh) {
 }
 
 TEST(LevelSet, ASphereComesBackWithSecondOrder) {
-  const TriMesh sphere = sphere_mesh(1, 48);
+  const TriMesh sphere = sphere_mesh(1, 32);
   double last = 0;
   for (const double voxel : {0.1, 0.05, 0.025}) {
     const TriMesh made = smooth_surface(level_set(sphere, voxel));
