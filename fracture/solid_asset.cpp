@@ -98,10 +98,12 @@ std::uint64_t cut_triangles(const CutSolid& cut) {
 void cut_flat(SolidAsset& asset, std::uint64_t seed, int threads) {
   const TriMesh& mesh = asset.surface.mesh;
   Cutter cutter{asset.solid, mesh, mesh, seed, threads};
-  const CutSolid cut = cutter.cut();
+  CutSolid cut = cutter.cut();
+  flip_flat_triangles(cut);
   asset.stats.exact_predicates = cut.exact_predicates;
   asset.stats.triangles_cut = cut_triangles(cut);
   asset.partition = partition_solid(mesh, {}, cutter.complex, cut, threads, asset.stats);
+  if (!cutter.complex.labels.empty()) merge_outer_triangles(mesh, asset.partition);
   asset.chunks = solid_masses(asset.partition, threads);
 }
 
@@ -120,6 +122,7 @@ bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int
       cut.places[v] =
           v < cut.surface_places.size() ? cut.surface_places[v] : warp.unwarped(cut.places[v]);
   });
+  flip_flat_triangles(cut);
   asset.stats = {};
   asset.stats.exact_predicates = cut.exact_predicates;
   asset.stats.triangles_cut = cut_triangles(cut);
@@ -127,6 +130,7 @@ bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int
   asset.stats.amplitude = warp.amplitude();
   asset.partition =
       partition_solid(fine.mesh, fine.parents, cutter.complex, cut, threads, asset.stats);
+  merge_outer_triangles(asset.surface.mesh, asset.partition);
   asset.chunks = solid_masses(asset.partition, threads);
   return std::ranges::all_of(asset.chunks, [](const auto& chunk) { return chunk.volume > 0; });
 }

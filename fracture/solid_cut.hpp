@@ -63,6 +63,10 @@ CutSolid cut_surface(const TriMesh& mesh, const TriMesh& shown, std::span<const 
 void cut_facets(const TriMesh& mesh, std::span<const Vec3> steps, const SolidFrame& frame,
                 const SolidComplex& complex, int threads, CutSolid& cut);
 
+/// Makes the facets' triangles that have no area into others, where they have neighbours to do it
+/// with.
+void flip_flat_triangles(CutSolid& cut);
+
 /// Triangles of a convex polygon (indices into `loop`), short diagonals first; nothing if a corner
 /// is so nearly straight that this could make one of no area.
 bool triangulate_convex(std::span<const Vec2> points,

@@ -54,7 +54,7 @@ struct SolidModel {
   std::string material = "concrete-c30";
   SolidPatternParams pattern = SolidVoronoiParams{};
   double roughness = 0;       ///< m, how far inner faces stray from their planes
-  double roughness_size = 0;  ///< m, of the bumps; 0: a quarter of a chunk's size
+  double roughness_size = 0;  ///< m, of the bumps; 0: half a chunk's size
   double uv_scale = 1;        ///< inner faces: metres per unit of texture
   double scale = 1;           ///< of the model's coordinates to metres
   bool repair = false;

@@ -14,6 +14,10 @@ SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_
                                const SolidComplex& complex, const CutSolid& cut, int threads,
                                SolidStats& stats);
 
+/// Triangles of a chunk that are parts of one of the surface's triangles, made anew without the
+/// corners between them. Chunks stay as they are but for that.
+void merge_outer_triangles(const TriMesh& surface, SolidPartition& partition);
+
 /// Mass properties of every chunk at density 1, and bonds of all pairs that share faces.
 std::vector<MassProperties> solid_masses(const SolidPartition& partition, int threads);
 std::vector<Bond> solid_bonds(const SolidPartition& partition);

@@ -26,7 +26,7 @@ double fade(double t) {
 
 SolidWarp::SolidWarp(const SolidModel& solid, double chunk, double share, std::uint64_t seed)
     : roughness_(share * solid.roughness),
-      size_(solid.roughness_size > 0 ? solid.roughness_size : chunk / 4),
+      size_(solid.roughness_size > 0 ? solid.roughness_size : chunk / 2),
       seed_(seed) {
   double left = kLipschitz;  // of the Lipschitz constant
   if (const auto* slices = std::get_if<SolidSlicesParams>(&solid.pattern)) {
@@ -45,7 +45,7 @@ SolidWarp::SolidWarp(const SolidModel& solid, double chunk, double share, std::u
 
 double SolidWarp::edge() const {
   double least = 1e300;
-  if (roughness_ > 0) least = size_ / 3;
+  if (roughness_ > 0) least = size_ / 2;
   if (amplitude_ > 0) least = std::min(least, wavelength_ / 8);
   return least;
 }
