@@ -269,7 +269,7 @@ reports_agree() {
   expect_text p.json '"chunks"'
 }
 scenes_are_sound() {
-  for scene in "$source"/data/scenes/*.json; do
+  for scene in "$source"/data/scenes/*.json "$source"/data/models/*.json; do
     grep -q '"building"' "$scene" && continue
     expect_exit 0 "$sunder" fracture "$scene" -o s.glb -o s.obj --report s.json
     expect_text s.json '"sound": true'
