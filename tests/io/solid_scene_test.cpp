@@ -183,6 +183,7 @@ TEST(SolidPrepare, RepairsWhenAskedAndReportsIt) {
 
 TEST(SolidPrepare, ACraterGoesIntoTheNearestFace) {
   SolidModel solid;
+  solid.max_error = 0.02;
   solid.craters = {{.centre = {0.5, 1, 0.5}, .radius = 0.3, .depth = 0.2, .into = {}}};
   const PreparedSolid prepared =
       prepare_solid(solid, test::as_surface(test::box({0, 0, 0}, {1, 1, 1})), 1);
