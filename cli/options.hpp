@@ -16,7 +16,8 @@ struct Options {
   Verb verb = Verb::fracture;
   std::vector<std::filesystem::path> inputs;  ///< scene, or files to check
   std::string schema = "scene";
-  std::string wall_scene;                      ///< scene text made from --wall …; empty: none
+  std::string made_scene;  ///< scene text made from --wall … or a model; empty: none
+  bool is_model = false;   ///< the input is a model
   std::vector<std::filesystem::path> outputs;  ///< -o
   std::filesystem::path report;                ///< --report; empty: none
   std::filesystem::path history;               ///< --history; empty: none

@@ -8,48 +8,83 @@
 
 #include "cli/options.hpp"
 #include "cli/outputs.hpp"
+#include "cli/solid_scene.hpp"
 #include "cli/usage.hpp"
 #include "cli/wall_scene.hpp"
+#include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
+#include "io/export_files.hpp"
+#include "io/import.hpp"
 #include "io/suggest.hpp"
 
 namespace sunder {
 namespace {
+
+constexpr const char* kWallGroup = "Wall";
+constexpr const char* kSolidGroup = "Model";
+constexpr const char* kPatternGroup = "Pattern";
 
 // CLI11 lets a list take every word up to the next option; here each word needs its own option.
 CLI::Option* one_value_each(CLI::Option* option) {
   return option->allow_extra_args(false);
 }
 
+// What CLI11 fills in that becomes an option only when all is read.
+struct Given {
+  WallOptions wall;
+  SolidOptions solid;
+  PatternOptions pattern;
+  std::string name, material, seed, threads, at;
+};
+
+template <class Params>
+KeyForm form_of(const Field<Params>& field) {
+  if (std::holds_alternative<std::vector<Vec2> Params::*>(field.member)) return KeyForm::pairs;
+  if (std::holds_alternative<Vec3 Params::*>(field.member)) return KeyForm::triple;
+  if (std::holds_alternative<std::vector<Vec3> Params::*>(field.member)) return KeyForm::triples;
+  return KeyForm::value;
+}
+
+std::string help_of(KeyForm form) {
+  switch (form) {
+    case KeyForm::value: return "";
+    case KeyForm::pairs: return ", X,Y, repeatable";
+    case KeyForm::triple: return ", X,Y,Z or XxYxZ";
+    case KeyForm::triples: return ", X,Y,Z, repeatable";
+  }
+  return "";
+}
+
 // One option per key of any generator, from the generators' own tables.
 template <class Params>
-void add_pattern_options(CLI::App& app, std::string_view type, WallOptions& wall,
-                         std::map<std::string, std::string>& help) {
+void add_pattern_options(CLI::App& app, const std::string& type, PatternOptions& pattern,
+                         KeyForms& forms, std::map<std::string, std::string>& help) {
   for (const Field<Params>& field : fields<Params>()) {
     const std::string key(field.name);
-    const bool points = std::holds_alternative<std::vector<Vec2> Params::*>(field.member);
-    const bool known = wall.is_points.contains(key);
-    wall.is_points[key] = points;
-    if (known) {
-      help[key] += "; " + std::string(type);
-      app.get_option(option_name(key))->description(help[key]);
+    const KeyForm form = form_of(field);
+    forms[key] = form;
+    std::string& text = help[key];
+    if (!text.empty()) {
+      text += "; " + type + (form == KeyForm::triples ? " (X,Y,Z)" : "");
+      app.get_option(option_name(key))->description(text);
       continue;
     }
-    help[key] = std::string(field.effect) +
-                (field.unit.empty() ? "" : " [" + std::string(field.unit) + "]") +
-                (points ? ", X,Y, repeatable" : "") + "; for " + std::string(type);
-    one_value_each(app.add_option(option_name(key), wall.pattern[key], help[key]))
-        ->group("Pattern");
+    text = std::string(field.effect) +
+           (field.unit.empty() ? "" : " [" + std::string(field.unit) + "]") + help_of(form) +
+           "; for " + type;
+    one_value_each(app.add_option(option_name(key), pattern.values[key], text))
+        ->group(kPatternGroup);
   }
 }
 
-template <std::size_t i = 0>
-void add_all_pattern_options(CLI::App& app, WallOptions& wall,
+template <class Patterns, std::size_t i = 0>
+void add_all_pattern_options(CLI::App& app, std::span<const std::string_view> types, const char* of,
+                             PatternOptions& pattern, KeyForms& forms,
                              std::map<std::string, std::string>& help) {
-  if constexpr (i < std::variant_size_v<PatternParams>) {
-    add_pattern_options<std::variant_alternative_t<i, PatternParams>>(app, kPatternTypes[i], wall,
-                                                                      help);
-    add_all_pattern_options<i + 1>(app, wall, help);
+  if constexpr (i < std::variant_size_v<Patterns>) {
+    add_pattern_options<std::variant_alternative_t<i, Patterns>>(app, std::string(types[i]) + of,
+                                                                 pattern, forms, help);
+    add_all_pattern_options<Patterns, i + 1>(app, types, of, pattern, forms, help);
   }
 }
 
@@ -86,11 +121,6 @@ void check_values(const CLI::App& verb) {
       if (value.empty()) usage(option->get_name() + " needs a value, got an empty one");
 }
 
-void check_pattern_values(const WallOptions& wall) {
-  for (const auto& [key, values] : wall.pattern)
-    if (!wall.is_points.at(key) && values.size() > 1) usage(option_name(key) + " is given twice");
-}
-
 // CLI11 says only that a word was not expected; this says what was meant.
 [[noreturn]] void explain(const CLI::App& app, const CLI::ParseError& error, int argc,
                           char** argv) {
@@ -101,10 +131,6 @@ void check_pattern_values(const WallOptions& wall) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
     if (verb == &app) names.push_back(sub->get_name());
-  for (const CLI::Option* option : verb->get_options())
-    if (option->count() > 1 && option->get_items_expected_max() == 1)
-      usage(option->nonpositional() ? option->get_name() + " is given twice"
-                                    : '"' + option->results()[1] + "\" belongs to no option");
   const std::vector<std::string_view> views(names.begin(), names.end());
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
@@ -117,14 +143,12 @@ void check_pattern_values(const WallOptions& wall) {
             (near.empty() ? "" : ", did you mean \"" + std::string(near) + "\"?"));
     }
   }
+  for (const CLI::Option* option : verb->get_options())
+    if (option->count() > 1 && option->get_items_expected_max() == 1)
+      usage(option->nonpositional() ? option->get_name() + " is given twice"
+                                    : '"' + option->results()[1] + "\" belongs to no option");
   usage(error.what());
 }
-
-// What CLI11 fills in that becomes an option only when all is read.
-struct Given {
-  WallOptions wall;
-  std::string seed, threads, at;
-};
 
 void add_report_options(CLI::App& verb, Options& options) {
   verb.add_option("--report", options.report, "Write the numbers of the run to this JSON file");
@@ -151,25 +175,62 @@ void add_scene_options(CLI::App& verb, Options& options, Given& given, const cha
 
 void add_wall_options(CLI::App& verb, WallOptions& wall) {
   const auto add = [&](const char* name, auto& value, const char* description) {
-    return verb.add_option(name, value, description)->group("Wall");
+    return verb.add_option(name, value, description)->group(kWallGroup);
   };
   add("--wall", wall.size, "A wall without a scene file: WIDTHxHEIGHTxTHICKNESS [m]");
-  add("--pattern", wall.type,
-      "Generator: voronoi-grid, voronoi-sites, voronoi-random, voronoi-focus, quad-grid, "
-      "spiderweb");
   one_value_each(add("--opening", wall.openings, "Opening WxH@X,Y [m], repeatable"));
   add("--anchors", wall.anchors, "Sides held by the world: bottom,left,right,top");
-  add("--name", wall.keys["name"], "Name of the wall");
-  add("--material", wall.keys["material"], "Material");
   add("--min-cell", wall.keys["min_cell"], "Merge cells smaller than this into a neighbour [m]");
+}
+
+// One option per plain key of a solid, from its table.
+void add_solid_options(CLI::App& verb, SolidOptions& solid) {
+  for (const Field<SolidModel>& field : fields<SolidModel>()) {
+    const std::string key(field.name);
+    if (key == "name" || key == "file" || key == "material") continue;
+    const std::string text = std::string(field.effect) +
+                             (field.unit.empty() ? "" : " [" + std::string(field.unit) + "]");
+    if (key == "repair") {
+      verb.add_flag(option_name(key), solid.repair, text)
+          ->disable_flag_override()
+          ->group(kSolidGroup);
+    } else {
+      verb.add_option(option_name(key), solid.keys[key], text)->group(kSolidGroup);
+    }
+  }
+  one_value_each(verb.add_option("--carve", solid.craters,
+                                 "Take a crater away first: X,Y,Z:RADIUS[:DEPTH] [m], repeatable"))
+      ->group(kSolidGroup);
+}
+
+// What walls and models have in common.
+void add_pattern_options(CLI::App& verb, Given& given) {
+  std::string types = "Generator: of a wall ";
+  const auto append = [&](std::span<const std::string_view> names) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      types += (i > 0 ? ", " : "") + std::string(names[i]);
+  };
+  append(kPatternTypes);
+  types += "; of a model ";
+  append(kSolidPatternTypes);
+  verb.add_option("--pattern", given.pattern.type, types)->group(kPatternGroup);
+  verb.add_option("--name", given.name, "Name of the wall or solid")->group(kPatternGroup);
+  verb.add_option("--material", given.material, "Material")->group(kPatternGroup);
   std::map<std::string, std::string> help;
-  add_all_pattern_options(verb, wall, help);
+  add_all_pattern_options<PatternParams>(verb, kPatternTypes, "", given.pattern, given.wall.forms,
+                                         help);
+  add_all_pattern_options<SolidPatternParams>(verb, kSolidPatternTypes, " of a model",
+                                              given.pattern, given.solid.forms, help);
 }
 
 CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
-  CLI::App& verb = *app.add_subcommand("fracture", "Pre-fracture the walls of a scene");
+  CLI::App& verb =
+      *app.add_subcommand("fracture", "Pre-fracture the walls and solids of a scene, or a model");
   add_scene_options(verb, options, given, ".glb .gltf .obj .stl .ply .svg .json");
+  verb.get_option("scene")->description("Scene file (JSON), or a model: .obj .glb .gltf .stl .ply");
   add_wall_options(verb, given.wall);
+  add_solid_options(verb, given.solid);
+  add_pattern_options(verb, given);
   return verb;
 }
 
@@ -218,18 +279,36 @@ void check_something_to_write(const Options& options, const std::string& verb) {
     usage(verb + " has nothing to write: give -o FILE, --report FILE or --json");
 }
 
-void finish_fracture(const CLI::App& verb, Options& options, const WallOptions& wall) {
-  check_pattern_values(wall);
-  if (wall.size.empty() == options.inputs.empty())
-    usage(wall.size.empty() ? "fracture needs a scene file or --wall"
-                            : "fracture takes a scene file or --wall, not both; \"" +
-                                  options.inputs.front().string() + "\" belongs to no option");
-  if (!wall.size.empty()) options.wall_scene = scene_text(wall);
-  if (wall.size.empty())
-    for (const CLI::Option* option : verb.get_options())
-      if (option->count() > 0 &&
-          (option->get_group() == "Wall" || option->get_group() == "Pattern"))
-        usage(option->get_name() + " goes with --wall; for a scene file use --set");
+// Options of a wall go with --wall, of a model with a model, those of both with neither alone.
+void check_groups(const CLI::App& verb, bool is_wall, bool is_model) {
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string group = option->get_group();
+    const char* with = group == kWallGroup && !is_wall                   ? "--wall"
+                       : group == kSolidGroup && !is_model               ? "a model"
+                       : group == kPatternGroup && !is_wall && !is_model ? "--wall or a model"
+                                                                         : nullptr;
+    if (with)
+      usage(option->get_name() + " goes with " + with +
+            (is_wall || is_model ? "" : "; for a scene file use --set"));
+  }
+}
+
+void finish_fracture(const CLI::App& verb, Options& options, Given& given) {
+  const bool is_wall = !given.wall.size.empty();
+  if (is_wall != options.inputs.empty())
+    usage(is_wall ? "fracture takes a scene file, a model or --wall, not two of them; \"" +
+                        options.inputs.front().string() + "\" belongs to no option"
+                  : "fracture needs a scene file, a model or --wall");
+  options.is_model = !is_wall && is_import_suffix(suffix_of(options.inputs.front()));
+  check_groups(verb, is_wall, options.is_model);
+  for (auto* keys : {&given.wall.keys, &given.solid.keys}) {
+    (*keys)["name"] = given.name;
+    (*keys)["material"] = given.material;
+  }
+  if (is_wall) options.made_scene = scene_text(given.wall, given.pattern);
+  if (options.is_model)
+    options.made_scene = scene_text(options.inputs.front().string(), given.solid, given.pattern);
   check_something_to_write(options, "fracture");
 }
 
@@ -286,8 +365,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   Options options;
   Given given;
   CLI::App app(
-      "Breaks walls into closed, textured chunks with bonds, as glTF or OBJ, simulates what hits "
-      "them, and brings frame buildings down.",
+      "Breaks walls and solid models into closed, textured chunks with bonds, as glTF or OBJ, "
+      "simulates what hits walls, and brings frame buildings down.",
       "sunder");
   app.set_version_flag("--version", "sunder " SUNDER_VERSION);
   app.require_subcommand(0, 1);
@@ -305,7 +384,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   read_numbers(options, given);
   options.verb = std::ranges::find(verbs, verb, &std::pair<CLI::App*, Verb>::first)->second;
   switch (options.verb) {
-    case Verb::fracture: finish_fracture(*verb, options, given.wall); break;
+    case Verb::fracture: finish_fracture(*verb, options, given); break;
     case Verb::impact: finish_impact(options); break;
     case Verb::collapse: finish_collapse(options); break;
     case Verb::check: finish_check(options); break;

@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <thread>
 
-#include "cli/wall_scene.hpp"
+#include "cli/scene_text.hpp"
 #include "meshing/error.hpp"
 
 namespace sunder {
 
 Scene read_scene(const Options& options) {
-  const SceneParams params{options.overrides, options.allow_outside};
-  const bool is_file = options.wall_scene.empty();
+  // A model named on the command line may lie anywhere.
+  const SceneParams params{options.overrides, options.allow_outside || options.is_model};
+  const bool is_file = options.made_scene.empty();
   try {
     Scene scene = is_file ? read_scene(options.inputs.front(), params)
-                          : parse_scene(options.wall_scene, kCommandLine, params);
+                          : parse_scene(options.made_scene, kCommandLine, params);
     if (options.seed) scene.seed = *options.seed;
     return scene;
   } catch (const Error& error) {

@@ -43,6 +43,8 @@ std::vector<std::string> shortcomings(const Scene& scene) {
   std::vector<std::string> list;
   if (!scene.walls.empty())
     list.emplace_back("walls beside the building are not used by collapse in this version");
+  if (!scene.solids.empty())
+    list.emplace_back("solids beside the building are not used by collapse");
   return list;
 }
 

@@ -38,7 +38,7 @@ void print_summary(const ImpactResult& result, const Scene& scene, const Options
                as_count(result.broken_bonds), as_count(result.chunks_split), result.freed_mass);
   print_ledger(result.energy_in, result.energy);
   print_steps(result, scene.seed);
-  print_end(options, scene, "impact", {"building", "scenario"}, watch);
+  print_end(options, scene, "impact", {"solids", "building", "scenario"}, watch);
 }
 
 Scene read_impact_scene(const Options& options) {

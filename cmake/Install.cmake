@@ -6,11 +6,12 @@ include(CMakePackageConfigHelpers)
 set(sunder_meshing_headers error field lattice model_surface parallel progress random raw_vector
                            region repair surface_defects tri_mesh triangulate trig vec)
 set(sunder_fracture_headers asset bonds breaking chunk_mesh cut local_web measure pattern quad_grid
-                            recover sites slivers solid_asset solid_model spiderweb support_graph voronoi wall)
+                            recover sites slivers solid_asset solid_model solid_prepare spiderweb
+                            support_graph voronoi wall)
 set(sunder_sim_headers blow buckling collapse frame impact joint_strength material penetration pose
                       post_stability projectile recording rigid_world section simulation_params spin)
 set(sunder_io_headers collapse_report collapse_scene export export_recording impact_report
-                      impact_scene import joint_history json_lines output report run_report scene)
+                      impact_scene import joint_history json_lines model output report run_report scene)
 foreach(layer meshing fracture sim io)
   foreach(header ${sunder_${layer}_headers})
     install(FILES ${PROJECT_SOURCE_DIR}/${layer}/${header}.hpp

@@ -68,7 +68,11 @@ class WallMeasure {
   WallMeasure(const SoupWall& wall, Soundness& result) : wall_(wall), result_(result) {}
 
   void run(const std::function<void(double)>& progress) {
-    choose_front();
+    is_solid_ = wall_.kind == SoupWall::Kind::solid;
+    if (wall_.has_chunks && !is_solid_) {
+      const bool is_prism = choose_front();
+      is_solid_ = wall_.kind == SoupWall::Kind::unknown && !is_prism;
+    }
     for (std::uint32_t c = 0; c < wall_.chunk_count; ++c) {
       const SoupChunk chunk = wall_.chunk(c);
       measure_chunk(c, chunk);
@@ -76,7 +80,7 @@ class WallMeasure {
     }
     match_cracks();
     progress(0.9);
-    if (wall_.has_chunks) find_overlaps();
+    if (wall_.has_chunks) is_solid_ ? find_repeated_faces() : find_overlaps();
     result_.chunks += wall_.chunk_count;
     result_.bonds += wall_.bonds;
   }
@@ -93,8 +97,8 @@ class WallMeasure {
 
   // Crack faces all contain the direction of the wall's thickness: it is perpendicular to any two
   // of them that are not parallel. With fewer, it is the direction of most of the outer area that
-  // is left to choose from. Looks at some of the chunks only.
-  void choose_front() {
+  // is left to choose from. Looks at some of the chunks only. False: there is no such direction.
+  bool choose_front() {
     std::vector<Vec3> cracks, outer;  // unit normals; area vectors, one per direction
     const std::uint32_t step = 1 + wall_.chunk_count / 64;
     for (std::uint32_t c = 0; c < wall_.chunk_count; c += step) {
@@ -108,7 +112,7 @@ class WallMeasure {
           add_direction(outer, n);
       }
     }
-    if (is_axis({0, 0, 1}, cracks, outer)) return;  // the frame that walls are written in
+    if (is_axis({0, 0, 1}, cracks, outer)) return true;  // the frame that walls are written in
     Vec3 axis;
     for (const Vec3& crack : cracks)
       if (const Vec3 n = cross(cracks[0], crack); length(n) > length(axis)) axis = n;
@@ -117,15 +121,16 @@ class WallMeasure {
       for (const Vec3& n : outer)
         if (is_axis((1 / length(n)) * n, cracks, outer) && length(n) > length(axis)) axis = n;
     }
-    if (!(length(axis) > 0)) return;
+    if (!(length(axis) > 0)) return false;
     normal_ = (1 / length(axis)) * axis;
     if (std::abs(normal_.z) > 1 - 1e-12) {
       normal_.z > 0 ? (right_ = {1, 0, 0}, up_ = {0, 1, 0}) : (right_ = {0, 1, 0}, up_ = {1, 0, 0});
-      return;
+      return is_axis(normal_, cracks, outer);
     }
     right_ = cross(std::abs(normal_.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal_);
     right_ = (1 / length(right_)) * right_;
     up_ = cross(normal_, right_);
+    return is_axis(normal_, cracks, outer);
   }
 
   // Whether all cracks contain the direction and every outer face either contains or faces it.
@@ -174,12 +179,29 @@ class WallMeasure {
                     cross(point(chunk, v[1]) - base, point(chunk, v[2]) - base)) /
                 6;
       add_to_hash(chunk, v);
-      if (!is_outer(chunk, t)) add_crack(id, c);
+      if (!is_outer(chunk, t)) {
+        add_triangle(id, c, cracks_);
+      } else if (is_solid_) {
+        add_triangle(id, c, outer_);
+      }
     }
     count_edges(volume);
     result_.volume += volume;
     result_.min_chunk_volume = std::min(result_.min_chunk_volume, volume);
-    if (wall_.has_chunks) add_front(c, chunk);
+    if (wall_.has_chunks) is_solid_ ? judge_thickness(chunk, volume) : add_front(c, chunk);
+  }
+
+  void judge_thickness(const SoupChunk& chunk, double volume) {
+    constexpr double kLeastShare = 1e-3;
+    if (chunk.triangles.empty()) return;
+    Vec3 low = point(chunk, chunk.triangles[0]), high = low;
+    for (const std::uint32_t v : chunk.triangles) {
+      const Vec3 p = point(chunk, v);
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const double diagonal = length(high - low);
+    result_.slivers += volume < kLeastShare * diagonal * diagonal * diagonal;
   }
 
   void add_to_hash(const SoupChunk& chunk, const std::uint32_t* triangle) {
@@ -190,12 +212,13 @@ class WallMeasure {
       }
   }
 
-  void add_crack(std::array<std::uint32_t, 3> id, std::uint32_t chunk) {
+  static void add_triangle(std::array<std::uint32_t, 3> id, std::uint32_t chunk,
+                           std::vector<CrackTriangle>& triangles) {
     const auto least = std::ranges::min_element(id) - id.begin();
     std::ranges::rotate(id, id.begin() + least);
     const bool even = id[1] < id[2];
     if (!even) std::swap(id[1], id[2]);
-    cracks_.push_back({id, even, chunk});
+    triangles.push_back({id, even, chunk});
   }
 
   void count_edges(double volume) {
@@ -228,6 +251,23 @@ class WallMeasure {
       if (!matched) result_.unmatched_faces += end - i;
       i = end;
     }
+  }
+
+  // Outer faces of a sound partition are parts of one surface, each there once.
+  void find_repeated_faces() {
+    std::ranges::sort(outer_, {},
+                      [](const CrackTriangle& t) { return std::tuple(t.points, t.chunk); });
+    for (std::size_t i = 1; i < outer_.size(); ++i) {
+      const CrackTriangle &a = outer_[i - 1], &b = outer_[i];
+      if (a.points == b.points && a.chunk != b.chunk) pairs_.push_back({a.chunk, b.chunk});
+    }
+    count_pairs();
+  }
+
+  void count_pairs() {
+    std::ranges::sort(pairs_);
+    result_.overlapping_pairs +=
+        static_cast<std::uint64_t>(std::unique(pairs_.begin(), pairs_.end()) - pairs_.begin());
   }
 
   void add_front(std::uint32_t c, const SoupChunk& chunk) {
@@ -306,9 +346,7 @@ class WallMeasure {
         compare_fronts(entries[i].triangle, entries[j].triangle);
     for (const std::uint32_t a : large)
       for (std::uint32_t b = 0; b < fronts_.size(); ++b) compare_fronts(a, b);
-    std::ranges::sort(pairs_);
-    result_.overlapping_pairs +=
-        static_cast<std::uint64_t>(std::unique(pairs_.begin(), pairs_.end()) - pairs_.begin());
+    count_pairs();
   }
 
   void compare_fronts(std::uint32_t i, std::uint32_t j) {
@@ -323,7 +361,8 @@ class WallMeasure {
   PointTable points_;
   std::vector<std::uint32_t> ids_;
   std::vector<std::uint64_t> edges_;
-  std::vector<CrackTriangle> cracks_;
+  std::vector<CrackTriangle> cracks_, outer_;
+  bool is_solid_ = false;
   std::vector<FrontTriangle> fronts_;
   std::vector<std::array<std::uint32_t, 2>> pairs_;
   Vec3 normal_{0, 0, 1}, right_{1, 0, 0}, up_{0, 1, 0};
@@ -359,6 +398,7 @@ Soundness measure(const std::vector<SoupWall>& walls, const Progress& progress) 
 SoupWall soup_of(const WallAsset& asset, const RenderMeshes& meshes) {
   SoupWall wall;
   wall.chunk_count = meshes.chunk_count();
+  wall.kind = SoupWall::Kind::wall;
   wall.bonds = asset.bonds.size();
   wall.volume_expected = asset.volume_expected;
   wall.chunk = [&meshes](std::uint32_t c) {
@@ -371,6 +411,28 @@ SoupWall soup_of(const WallAsset& asset, const RenderMeshes& meshes) {
       const auto first = meshes.indices.begin() + meshes.lists[id].begin;
       chunk.triangles.insert(chunk.triangles.end(), first, first + meshes.lists[id].count);
       chunk.inner.insert(chunk.inner.end(), meshes.lists[id].count / 3, inner);
+    }
+    return chunk;
+  };
+  return wall;
+}
+
+SoupWall soup_of(const SolidAsset& asset, const SolidMeshes& meshes) {
+  SoupWall wall;
+  wall.chunk_count = asset.partition.chunk_count();
+  wall.kind = SoupWall::Kind::solid;
+  wall.bonds = asset.bonds.size();
+  wall.volume_expected = asset.volume_expected;
+  wall.chunk = [&meshes](std::uint32_t c) {
+    SoupChunk chunk;
+    const std::size_t begin = meshes.vertex_begin[c], end = meshes.vertex_begin[c + 1];
+    chunk.positions.assign(meshes.positions.data() + 3 * begin, meshes.positions.data() + 3 * end);
+    for (std::uint32_t p = meshes.part_begin[c]; p < meshes.part_begin[c + 1]; ++p) {
+      const SolidMeshes::Part& part = meshes.parts[p];
+      const auto first = meshes.indices.begin() + part.begin;
+      chunk.triangles.insert(chunk.triangles.end(), first, first + part.count);
+      chunk.inner.insert(chunk.inner.end(), part.count / 3,
+                         part.material == SolidMeshes::kInnerMaterial);
     }
     return chunk;
   };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fracture/chunk_mesh.hpp"
+#include "fracture/solid_asset.hpp"
 
 namespace sunder {
 
@@ -23,6 +24,9 @@ struct SoupWall {
   std::function<SoupChunk(std::uint32_t)> chunk;
   /// False when the whole wall is one soup without chunk borders (STL, PLY).
   bool has_chunks = true;
+  /// A wall's chunks run through its thickness and are compared by their front faces; those of a
+  /// solid lie anywhere. Not known: a wall if its faces are such.
+  enum class Kind : std::uint8_t { unknown, wall, solid } kind = Kind::unknown;
   std::uint64_t bonds = 0;
   double volume_expected = std::numeric_limits<double>::quiet_NaN();  ///< m³; NaN: not known
 };
@@ -37,8 +41,12 @@ struct Soundness {
   std::uint64_t nonmanifold_chunks = 0;  ///< some directed edge occurs twice
   std::uint64_t inverted_chunks = 0;     ///< closed, but the volume is not above 0
   std::uint64_t unmatched_faces = 0;     ///< crack triangles without exactly one reverse elsewhere
-  std::uint64_t overlapping_pairs = 0;   ///< chunks whose front faces overlap, decided exactly
-  std::uint64_t slivers = 0;             ///< chunks whose front is thinner than 1:50
+  /// Chunks of a wall whose front faces overlap, decided exactly; of a solid, chunks that have an
+  /// outer triangle with the same corners (see docs/formats.md for what that proves).
+  std::uint64_t overlapping_pairs = 0;
+  /// Chunks of a wall whose front is thinner than 1:50; of a solid, those with less than a
+  /// thousandth of the volume of the cube over their bounding box's diagonal.
+  std::uint64_t slivers = 0;
   double min_chunk_volume = std::numeric_limits<double>::infinity();
   std::uint64_t hash = 0;  ///< of all chunks' triangles, bit for bit
 
@@ -53,5 +61,7 @@ Soundness measure(const std::vector<SoupWall>& walls, const Progress& progress =
 
 /// A wall's render meshes as a soup; both must outlive it.
 SoupWall soup_of(const WallAsset& asset, const RenderMeshes& meshes);
+/// The same of a solid.
+SoupWall soup_of(const SolidAsset& asset, const SolidMeshes& meshes);
 
 }  // namespace sunder

@@ -9,7 +9,7 @@
 
 #include "fracture/wall.hpp"
 #include "meshing/field.hpp"
-#include "meshing/model_surface.hpp"
+#include "meshing/repair.hpp"
 
 namespace sunder {
 
@@ -25,7 +25,7 @@ struct SolidVoronoiParams {
 struct SolidSlicesParams {
   Vec3 slices{3, 3, 3};         ///< cuts along x, y, z; whole numbers
   double offset_variation = 0;  ///< of the distance between cuts, 0 … 1
-  double angle_variation = 0;   ///< rad, most
+  double angle_variation = 0;   ///< rad, most; degrees in its table
   double amplitude = 0;         ///< m, of waves
   double wavelength = 0.5;      ///< m
 };
@@ -58,9 +58,27 @@ struct SolidModel {
   double uv_scale = 1;        ///< inner faces: metres per unit of texture
   double scale = 1;           ///< of the model's coordinates to metres
   bool repair = false;
-  double max_error = 0;  ///< m, of the repair
+  double max_error = 0;  ///< m, of repair and craters
+  /// Craters, one after the other. With a depth and without a direction (0, 0, 0) a crater goes
+  /// against the normal of the face that is nearest to its centre.
+  std::vector<CarveParams> craters;
   Vec3 position;
   Quaternion rotation;
 };
+
+template <>
+std::span<const Field<SolidVoronoiParams>> fields();
+template <>
+std::span<const Field<SolidSlicesParams>> fields();
+template <>
+std::span<const Field<SolidRadialParams>> fields();
+template <>
+std::span<const Field<SolidBrickParams>> fields();
+/// Of a crater, without its centre and direction.
+template <>
+std::span<const Field<CarveParams>> fields();
+/// The plain keys of a solid.
+template <>
+std::span<const Field<SolidModel>> fields();
 
 }  // namespace sunder

@@ -8,6 +8,7 @@
 #include "io/export_files.hpp"
 #include "io/gltf.hpp"
 #include "io/obj.hpp"
+#include "io/solid_view.hpp"
 #include "io/svg.hpp"
 #include "meshing/error.hpp"
 
@@ -15,15 +16,6 @@ namespace sunder {
 namespace {
 
 constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl", ".ply", ".svg"};
-
-std::vector<WallView> views_of(const MeshedAsset& asset) {
-  std::vector<WallView> views;
-  views.reserve(asset.meshes.size());
-  for (std::size_t i = 0; i < asset.meshes.size(); ++i) {
-    views.push_back(view_of(asset.asset.walls[i], asset.meshes[i]));
-  }
-  return views;
-}
 
 void write_pair(std::span<const WallView> walls, const std::filesystem::path& path,
                 const std::string& suffix) {
@@ -74,21 +66,39 @@ void commit_pair(OutputFile& companion, OutputFile& file) {
   }
 }
 
-MeshedAsset mesh_asset(const Asset& asset, int threads) {
-  MeshedAsset result{asset, {}};
+std::vector<WallView> views_of(const MeshedAsset& asset, const std::filesystem::path& path) {
+  std::vector<WallView> views;
+  views.reserve(asset.meshes.size() + asset.solid_meshes.size());
+  for (std::size_t i = 0; i < asset.meshes.size(); ++i) {
+    views.push_back(view_of(asset.asset.walls[i], asset.meshes[i]));
+  }
+  for (std::size_t i = 0; i < asset.solid_meshes.size(); ++i) {
+    views.push_back(view_of(asset.solids[i], asset.solid_meshes[i], path));
+  }
+  make_names_differ(views);
+  return views;
+}
+
+MeshedAsset mesh_asset(const Asset& asset, int threads, std::span<const SolidAsset> solids) {
+  MeshedAsset result{asset, {}, solids, {}};
   for (const WallAsset& wall : asset.walls) {
     result.meshes.push_back(render_meshes(wall, threads));
+  }
+  for (const SolidAsset& solid : solids) {
+    result.solid_meshes.push_back(solid_meshes(solid, threads));
   }
   return result;
 }
 
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path) {
   const std::string suffix = suffix_of(path);
-  if (suffix == ".svg") return write_file(path, draw_svg(asset.asset));
+  if (suffix == ".svg") {
+    return write_file(path, draw_svg(asset.asset, asset.solids));
+  }
   if (suffix != ".glb" && suffix != ".gltf" && suffix != ".obj") {
     return export_through_assimp(asset, path);
   }
-  const std::vector<WallView> walls = views_of(asset);
+  const std::vector<WallView> walls = views_of(asset, path);
   try {
     validate(walls);
     if (suffix != ".glb") return write_pair(walls, path, suffix);

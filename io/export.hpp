@@ -2,32 +2,40 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "fracture/asset.hpp"
 #include "fracture/chunk_mesh.hpp"
+#include "fracture/solid_asset.hpp"
 
 namespace sunder {
 
 /// Suffixes export_asset writes: .glb .gltf .obj .stl .ply .svg
 bool is_export_suffix(const std::string& suffix);
 
-/// An asset with the render meshes of its walls, made once for any number of files.
+/// An asset with the render meshes of its walls, made once for any number of files; and solids
+/// with theirs.
 struct MeshedAsset {
   const Asset& asset;
   std::vector<RenderMeshes> meshes;  ///< one per wall
+  std::span<const SolidAsset> solids = {};
+  std::vector<SolidMeshes> solid_meshes = {};
 };
-MeshedAsset mesh_asset(const Asset& asset, int threads = 1);
+MeshedAsset mesh_asset(const Asset& asset, int threads = 1,
+                       std::span<const SolidAsset> solids = {});
 
 /// Writes the asset in the format of the path's suffix; whole or not at all (a .gltf with its .bin,
 /// an .obj with its .mtl). GLB, glTF and OBJ are written straight from the meshes by the writers
 /// that are also registered with assimp (export_through_assimp), byte for byte the same; STL and PLY
-/// by assimp; SVG by ourselves. Throws Error{usage} for another suffix, Error{output} on failure.
+/// by assimp; SVG by ourselves. A solid's textures stand inside a .glb; a .gltf or .mtl refers to
+/// the files by their path from its folder. Throws Error{usage} for another suffix, Error{output} on failure.
 /// Same asset, same bytes.
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path);
 
-/// The same file by way of an aiScene and Assimp::Exporter, for every format but .svg.
+/// The same file by way of an aiScene and Assimp::Exporter, for every format but .svg; of solids,
+/// .stl and .ply only.
 void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path& path);
 
 }  // namespace sunder

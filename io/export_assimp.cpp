@@ -140,6 +140,7 @@ std::unique_ptr<aiMesh> make_mesh(const WallView& wall, std::uint32_t list, std:
   mesh->mNormals = new aiVector3D[mesh->mNumVertices];
   mesh->mTextureCoords[0] = new aiVector3D[mesh->mNumVertices];
   mesh->mNumUVComponents[0] = 2;
+  if (!wall.colours.empty()) mesh->mColors[0] = new aiColor4D[mesh->mNumVertices];
   for (std::uint32_t v = begin; v < end; ++v) {
     const std::size_t at = first + v;
     mesh->mVertices[v - begin] = {wall.positions[3 * at], wall.positions[3 * at + 1],
@@ -147,6 +148,12 @@ std::unique_ptr<aiMesh> make_mesh(const WallView& wall, std::uint32_t list, std:
     mesh->mNormals[v - begin] = {wall.normals[3 * at], wall.normals[3 * at + 1],
                                  wall.normals[3 * at + 2]};
     mesh->mTextureCoords[0][v - begin] = {wall.uvs[2 * at], wall.uvs[2 * at + 1], 0};
+    if (wall.colours.empty()) continue;
+    const auto srgb = [](float value) {
+      return static_cast<float>(srgb_channel(static_cast<double>(value)));
+    };
+    const std::span<const float> c = wall.colours.subspan(4 * at, 4);
+    mesh->mColors[0][v - begin] = {srgb(c[0]), srgb(c[1]), srgb(c[2]), c[3]};
   }
   mesh->mNumFaces = range.count / 3;
   mesh->mFaces = new aiFace[mesh->mNumFaces];
@@ -160,13 +167,14 @@ std::unique_ptr<aiMesh> make_mesh(const WallView& wall, std::uint32_t list, std:
   return mesh;
 }
 
-std::uint32_t smallest_index(const WallView& wall, std::uint32_t list) {
-  const IndexList range = wall.lists[list];
-  return *std::ranges::min_element(wall.indices.subspan(range.begin, range.count));
-}
-
-bool is_drawn(const WallView& wall, std::uint32_t list) {
-  return list != RenderMeshes::kNoList && wall.lists[list].count > 0;
+// The vertices of a chunk that a part of it uses, and perhaps others between them.
+struct VertexRange {
+  std::uint32_t begin = 0, end = 0;
+};
+VertexRange vertices_of(const WallView& wall, const ViewPart& part) {
+  const IndexList range = wall.lists[part.list];
+  const auto [least, largest] = std::ranges::minmax(wall.indices.subspan(range.begin, range.count));
+  return {least, largest + 1};
 }
 
 std::unique_ptr<aiMetadata> chunk_metadata(const MassProperties& p) {
@@ -267,19 +275,17 @@ std::unique_ptr<aiNode> chunk_node(const WallView& wall, std::uint32_t chunk,
                                    const std::string& name, SceneParts& parts) {
   auto node = std::make_unique<aiNode>(name);
   node->mMetaData = chunk_metadata(wall.chunks[chunk]).release();
-  const std::uint32_t outer = wall.outer[chunk], inner = wall.inner[chunk];
-  const std::uint32_t first = wall.vertex_begin[chunk], count = wall.vertex_count(chunk);
-  const std::uint32_t split = is_drawn(wall, inner) ? smallest_index(wall, inner) : count;
+  const std::uint32_t first = wall.vertex_begin[chunk];
   std::vector<unsigned> ids;
-  const auto add = [&](std::uint32_t list, std::uint32_t begin, std::uint32_t end,
-                       const std::string& side) {
-    parts.meshes.push_back(make_mesh(wall, list, first, begin, end));
-    parts.meshes.back()->mName = aiString(name + side);
-    parts.meshes.back()->mMaterialIndex = parts.material(wall.material + side);
+  for (const ViewPart& part : wall.parts_of(chunk)) {
+    if (wall.lists[part.list].count == 0) continue;
+    const auto [begin, end] = vertices_of(wall, part);
+    const std::string& material = wall.materials[part.material].name;
+    parts.meshes.push_back(make_mesh(wall, part.list, first, begin, end));
+    parts.meshes.back()->mName = aiString(name + '_' + material);
+    parts.meshes.back()->mMaterialIndex = parts.material(material);
     ids.push_back(static_cast<unsigned>(parts.meshes.size() - 1));
-  };
-  if (is_drawn(wall, outer)) add(outer, 0, split, "_outer");
-  if (is_drawn(wall, inner)) add(inner, is_drawn(wall, outer) ? split : 0, count, "_inner");
+  }
   if (ids.empty()) return node;
   node->mNumMeshes = static_cast<unsigned>(ids.size());
   node->mMeshes = new unsigned[ids.size()];
@@ -302,6 +308,22 @@ T** release_all(std::vector<std::unique_ptr<T>>& owned) {
   T** pointers = new T*[owned.size()];
   for (std::size_t i = 0; i < owned.size(); ++i) pointers[i] = owned[i].release();
   return pointers;
+}
+
+bool shares_vertices(const aiScene& scene) {
+  std::vector<bool> seen;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    seen.assign(mesh.mNumVertices, false);
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
+        const unsigned v = mesh.mFaces[f].mIndices[k];
+        if (seen[v]) return true;
+        seen[v] = true;
+      }
+    }
+  }
+  return false;
 }
 
 // Bonds only for our own formats: in STL and PLY they would be stray points.
@@ -328,8 +350,8 @@ std::unique_ptr<aiScene> make_scene(std::span<const WallView> walls, bool with_b
   scene->mMeshes = release_all(parts.meshes);
   scene->mNumMaterials = static_cast<unsigned>(parts.materials.size());
   scene->mMaterials = release_all(parts.materials);
-  // Faces of a chunk share vertices; assimp's steps unshare them where they must.
-  scene->mFlags |= AI_SCENE_FLAGS_NON_VERBOSE_FORMAT;
+  // Where faces share vertices assimp's steps unshare them; they fail if told so of others.
+  if (shares_vertices(*scene)) scene->mFlags |= AI_SCENE_FLAGS_NON_VERBOSE_FORMAT;
   return scene;
 }
 
@@ -453,7 +475,6 @@ void gather(const aiScene& scene, const aiNode& node, GatheredWall& wall) {
     append_chunk(scene, child, wall);
   }
   const Vec3 axis = required_vector(data, "rotation");
-  const RenderMeshes& m = wall.meshes;
   wall.view = {.name = node.mName.C_Str(),
                .first_chunk = first_chunk.C_Str(),
                .material = required<aiString>(data, "material").C_Str(),
@@ -462,16 +483,9 @@ void gather(const aiScene& scene, const aiNode& node, GatheredWall& wall) {
                .thickness = required<double>(data, "thickness"),
                .density = required<double>(data, "density"),
                .volume_expected = required<double>(data, "volume_expected"),
-               .positions = m.positions,
-               .normals = m.normals,
-               .uvs = m.uvs,
-               .vertex_begin = m.vertex_begin,
-               .indices = m.indices,
-               .lists = m.lists,
-               .outer = m.outer,
-               .inner = m.inner,
                .chunks = wall.chunks,
                .bonds = wall.bonds};
+  show_meshes(wall.meshes, wall.view);
 }
 
 // --- our formats, registered with assimp ---------------------------------------------------------
@@ -530,21 +544,23 @@ const char* format_of(const std::filesystem::path& path) {
 }  // namespace
 
 void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path& path) {
-  const char* format = format_of(path);
-  std::vector<WallView> walls;
-  for (std::size_t i = 0; i < asset.meshes.size(); ++i) {
-    walls.push_back(view_of(asset.asset.walls[i], asset.meshes[i]));
-  }
+  std::string format = format_of(path);
+  const bool is_soup = suffix_of(path) == ".stl" || suffix_of(path) == ".ply";
   const std::string name = path.string();
+  if (!asset.solids.empty() && !is_soup)
+    throw Error(ErrorCode::usage, name + ": solids go through assimp as .stl and .ply only");
+  const std::vector<WallView> walls = views_of(asset, path);
+  // assimp 5.2 writes colours of a binary PLY as floats where its header says bytes.
+  const auto has_colours = [](const WallView& wall) { return !wall.colours.empty(); };
+  if (format == "plyb" && std::ranges::any_of(walls, has_colours)) format = "ply";
   try {
     validate(walls);
-    const std::unique_ptr<aiScene> scene =
-        make_scene(walls, suffix_of(path) != ".stl" && suffix_of(path) != ".ply");
+    const std::unique_ptr<aiScene> scene = make_scene(walls, !is_soup);
     Assimp::Exporter exporter;
     register_formats(exporter);
     auto* files = new OutputFiles;
     exporter.SetIOHandler(files);  // owns it
-    const aiReturn result = exporter.Export(scene.get(), format, name);
+    const aiReturn result = exporter.Export(scene.get(), format.c_str(), name);
     if (files->failure.first) std::rethrow_exception(files->failure.first);
     if (result != aiReturn_SUCCESS) throw Error(ErrorCode::output, exporter.GetErrorString());
     files->commit();

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
 #include "meshing/field.hpp"
 
@@ -16,7 +17,7 @@ namespace sunder {
 /// A Field without its struct: what the schema and the documentation say about a key.
 struct FieldRow {
   using Value = std::variant<double, std::int64_t, bool, std::string, std::vector<std::string>,
-                             std::vector<Vec2>>;
+                             std::vector<Vec2>, Vec3, std::vector<Vec3>>;
   std::string_view name, unit, effect;
   Value default_value;
   Range range;
@@ -49,14 +50,14 @@ std::vector<FieldRow> field_rows() {
   return rows;
 }
 
-/// The tables of every pattern type, in the order of kPatternTypes.
-template <std::size_t i = 0>
+/// The tables of every pattern type, in the order of kPatternTypes or kSolidPatternTypes.
+template <class Patterns, std::size_t i = 0>
 std::vector<std::vector<FieldRow>> pattern_rows() {
-  if constexpr (i == std::variant_size_v<PatternParams>) {
+  if constexpr (i == std::variant_size_v<Patterns>) {
     return {};
   } else {
-    auto rows = pattern_rows<i + 1>();
-    rows.insert(rows.begin(), field_rows<std::variant_alternative_t<i, PatternParams>>());
+    auto rows = pattern_rows<Patterns, i + 1>();
+    rows.insert(rows.begin(), field_rows<std::variant_alternative_t<i, Patterns>>());
     return rows;
   }
 }

@@ -9,29 +9,13 @@
 #include "io/gltf_binary.hpp"
 #include "io/gltf_document.hpp"
 #include "io/gltf_layout.hpp"
+#include "io/image_file.hpp"
 #include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
-
-// Everything but letters, digits and -._~ as %XX (RFC 3986).
-std::string percent_encoded(const std::string& name) {
-  constexpr char kHex[] = "0123456789ABCDEF";
-  std::string text;
-  for (const char c : name) {
-    const auto code = static_cast<unsigned char>(c);
-    const bool plain = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '.' || c == '_' || c == '~';
-    if (plain) {
-      text += c;
-    } else {
-      text += {'%', kHex[code >> 4], kHex[code & 15]};
-    }
-  }
-  return text;
-}
 
 void refuse_above_4_gib(std::uint64_t size) {
   if (size > UINT32_MAX) {
@@ -44,7 +28,7 @@ void refuse_above_4_gib(std::uint64_t size) {
 
 void write_glb(std::span<const WallView> walls, ByteSink& out, const Recording* recording,
                std::optional<std::uint32_t> step) {
-  const GltfLayout layout = lay_out_gltf(walls, recording, step);
+  const GltfLayout layout = lay_out_gltf(walls, recording, step, true);
   refuse_above_4_gib(layout.binary_size);
   // The length of the JSON is known when it has been written; the header is filled in at the end.
   const std::array<std::byte, 20> room{};
@@ -65,7 +49,7 @@ void write_glb(std::span<const WallView> walls, ByteSink& out, const Recording* 
 
 void write_gltf(std::span<const WallView> walls, const std::string& binary_name, ByteSink& json,
                 ByteSink& binary, const Recording* recording, std::optional<std::uint32_t> step) {
-  const GltfLayout layout = lay_out_gltf(walls, recording, step);
+  const GltfLayout layout = lay_out_gltf(walls, recording, step, false);
   write_gltf_document(walls, layout, percent_encoded(binary_name), json);
   write_gltf_binary(walls, layout, binary);
 }

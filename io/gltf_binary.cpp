@@ -171,6 +171,11 @@ void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout
   for (const GltfParts::Shape& shape : parts.shapes) pass(shape.mesh.normals);
   for (const WallView& wall : walls) out.put_uvs(wall.uvs);
   for (const GltfParts::Shape& shape : parts.shapes) out.put_uvs(shape.mesh.uvs);
+  for (const WallView& wall : walls) {
+    for (std::size_t i = 0; i + 4 <= wall.colours.size(); i += 4) {
+      out.put(std::array{wall.colours[i], wall.colours[i + 1], wall.colours[i + 2]});
+    }
+  }
   write_colours(layout, out);
   for (const UniqueLists::List& list : layout.lists.lists) {
     write_indices(list.indices, list.largest <= kLargestShortIndex, out);
@@ -184,6 +189,11 @@ void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout
   write_poses(layout, out);
   write_weights(parts, out);
   out.flush();
+  for (const GltfImage& image : layout.images) {
+    sink.write(image.bytes);
+    for (std::size_t size = image.bytes.size(); size % 4 != 0; ++size) out.put(std::byte{0});
+    out.flush();
+  }
 }
 
 }  // namespace sunder

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/gltf_document.hpp"
 
+#include <algorithm>
+
 #include "io/gltf_motion.hpp"
 #include "io/gltf_part_text.hpp"
 #include "io/gltf_text.hpp"
+#include "io/image_file.hpp"
 #include "io/moment.hpp"
 
 namespace sunder {
@@ -49,9 +52,9 @@ class Document {
 
  private:
   bool has_mesh(std::size_t w, std::uint32_t chunk) const {
-    const WallView& wall = walls_[w];
     const auto& lists = layout_.lists.of_wall[w];
-    return is_drawn(wall, lists, wall.outer[chunk]) || is_drawn(wall, lists, wall.inner[chunk]);
+    return std::ranges::any_of(walls_[w].parts_of(chunk),
+                               [&](const ViewPart& part) { return lists[part.list] != kUnused; });
   }
 
   void write_scene();
@@ -62,20 +65,24 @@ class Document {
   void write_chunk_node(std::size_t w, std::uint32_t chunk, std::string_view name,
                         std::uint64_t mesh);
   void write_meshes();
-  void write_primitive(std::uint64_t accessor, std::uint32_t list, std::uint32_t material);
+  void write_primitive(std::uint64_t accessor, bool has_colours, std::uint32_t list,
+                       std::uint32_t material);
   void write_materials();
-  void write_look(const Colour& colour, double metallic, double roughness);
+  void write_images();
+  void write_image_views(bool& first);
+  void write_look(const ViewMaterial& material);
   void write_accessors();
-  void write_vertex_accessors(const WallView& wall, std::uint32_t chunk, std::uint64_t first);
+  void write_vertex_accessors(std::size_t w, std::uint32_t chunk);
   void write_list_accessors();
   void write_bond_accessors(std::size_t w);
   void write_views();
   void write_view(GltfBlock block, std::string_view rest, bool& first);
 
-  // Accessors: index lists, then three per mesh, then four per wall with bonds.
+  // Accessors: index lists, then three or with colours four per mesh, then four per wall with
+  // bonds.
   std::uint64_t first_vertex_accessor() const { return layout_.lists.lists.size(); }
   std::uint64_t first_bond_accessor() const {
-    return first_vertex_accessor() + 3 * layout_.mesh_count;
+    return first_vertex_accessor() + 3 * layout_.mesh_count + layout_.coloured_count;
   }
   std::uint64_t accessor_count() const {
     std::uint64_t count = first_bond_accessor();
@@ -167,7 +174,11 @@ void Document::write_wall_node(std::size_t w, std::uint64_t first_child) {
 
 void Document::write_wall_extras(std::size_t w) {
   const WallView& wall = walls_[w];
-  out_.key(R"(,"extras":{"sunder":{"sunder":1,"thickness":)", wall.thickness);
+  if (wall.is_solid) {
+    out_.text(R"(,"extras":{"sunder":{"sunder":1,"kind":"solid")");
+  } else {
+    out_.key(R"(,"extras":{"sunder":{"sunder":1,"thickness":)", wall.thickness);
+  }
   out_.key(R"(,"density":)", wall.density);
   out_.key(R"(,"volume_expected":)", wall.volume_expected);
   out_.text(R"(,"material":)");
@@ -236,7 +247,7 @@ void Document::write_meshes() {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallView& wall = walls_[w];
     const auto& lists = layout_.lists.of_wall[w];
-    const GltfLayout::MaterialIds materials = layout_.materials_of[w];
+    const auto& materials = layout_.materials_of[w];
     ChunkNames name(wall.first_chunk);
     for (std::uint32_t c = 0; c < wall.chunk_count(); ++c, ++name) {
       if (!has_mesh(w, c)) continue;
@@ -244,14 +255,15 @@ void Document::write_meshes() {
       out_.text(R"({"name":")");
       out_.text(*name);
       out_.text(R"(","primitives":[)");
-      const bool outer = is_drawn(wall, lists, wall.outer[c]);
-      if (outer) write_primitive(accessor, lists[wall.outer[c]], materials.outer);
-      if (is_drawn(wall, lists, wall.inner[c])) {
-        if (outer) out_.text(",");
-        write_primitive(accessor, lists[wall.inner[c]], materials.inner);
+      bool first_part = true;
+      for (const ViewPart& part : wall.parts_of(c)) {
+        if (lists[part.list] == kUnused) continue;
+        out_.separate(first_part);
+        write_primitive(accessor, !wall.colours.empty(), lists[part.list],
+                        materials[part.material]);
       }
       out_.text("]}");
-      accessor += 3;
+      accessor += wall.colours.empty() ? 3 : 4;
     }
   }
   motion_.write_meshes(first);
@@ -259,13 +271,15 @@ void Document::write_meshes() {
   out_.text("]");
 }
 
-void Document::write_primitive(std::uint64_t accessor, std::uint32_t list, std::uint32_t material) {
+void Document::write_primitive(std::uint64_t accessor, bool has_colours, std::uint32_t list,
+                               std::uint32_t material) {
   out_.text(R"({"attributes":{"POSITION":)");
   out_.integer(accessor);
   out_.text(R"(,"NORMAL":)");
   out_.integer(accessor + 1);
   out_.text(R"(,"TEXCOORD_0":)");
   out_.integer(accessor + 2);
+  if (has_colours) out_.key_integer(R"(,"COLOR_0":)", accessor + 3);
   out_.text(R"(},"indices":)");
   out_.integer(list);
   out_.text(R"(,"material":)");
@@ -276,33 +290,72 @@ void Document::write_primitive(std::uint64_t accessor, std::uint32_t list, std::
 void Document::write_materials() {
   out_.text(R"(,"materials":[)");
   bool first = true;
-  for (const auto& [name, use] : layout_.materials) {
+  for (const ViewMaterial& material : layout_.materials) {
     out_.separate(first);
     out_.text(R"({"name":)");
-    if (use == GltfUse::member) {
-      const MemberLook look = member_look(name);
-      out_.quoted(name);
-      write_look({1, 1, 1}, look.metallic, look.roughness);
-      continue;
+    out_.quoted(material.name);
+    write_look(material);
+  }
+  out_.text("]");
+  write_images();
+}
+
+void Document::write_look(const ViewMaterial& material) {
+  const auto [r, g, b] = material.colour;
+  out_.text(R"(,"pbrMetallicRoughness":{"baseColorFactor":)");
+  out_.numbers({r, g, b, material.alpha});
+  if (!material.image.empty()) {
+    const auto image = std::ranges::find(layout_.images, material.image, &GltfImage::image);
+    out_.key_integer(R"(,"baseColorTexture":{"index":)",
+                     static_cast<std::uint64_t>(image - layout_.images.begin()));
+    out_.text("}");
+  }
+  out_.text(R"(,"metallicFactor":)");
+  out_.number(material.metallic);
+  out_.text(R"(,"roughnessFactor":)");
+  out_.number(material.roughness);
+  out_.text("}");
+  if (material.alpha < 1) out_.text(R"(,"alphaMode":"BLEND")");
+  out_.text("}");
+}
+
+// Texture i shows image i.
+void Document::write_images() {
+  if (layout_.images.empty()) return;
+  out_.text(R"(,"textures":[)");
+  bool first = true;
+  for (std::size_t i = 0; i < layout_.images.size(); ++i) {
+    out_.separate(first);
+    out_.key_integer(R"({"source":)", i);
+    out_.text("}");
+  }
+  out_.text(R"(],"images":[)");
+  std::uint64_t view = 0;
+  for (const GltfLayout::Block& block : layout_.blocks) view += block.size > 0;
+  first = true;
+  for (const GltfImage& image : layout_.images) {
+    out_.separate(first);
+    if (image.bytes.empty()) {
+      out_.text(R"({"uri":)");
+      out_.quoted(percent_encoded(image.uri));
+    } else {
+      out_.key_integer(R"({"bufferView":)", view++);
+      out_.text(R"(,"mimeType":)");
+      out_.quoted(image.mime);
     }
-    const bool inner = use == GltfUse::inner;
-    const MaterialLook look = look_of(name);
-    const auto& colour = inner ? look.inner : look.outer;
-    out_.quoted(name + (inner ? "_inner" : "_outer"));
-    write_look({linear(colour[0]), linear(colour[1]), linear(colour[2])}, look.metallic,
-               inner ? look.inner_roughness : look.outer_roughness);
+    out_.text("}");
   }
   out_.text("]");
 }
 
-void Document::write_look(const Colour& colour, double metallic, double roughness) {
-  out_.text(R"(,"pbrMetallicRoughness":{"baseColorFactor":)");
-  out_.numbers({colour[0], colour[1], colour[2], 1});
-  out_.text(R"(,"metallicFactor":)");
-  out_.number(metallic);
-  out_.text(R"(,"roughnessFactor":)");
-  out_.number(roughness);
-  out_.text("}}");
+void Document::write_image_views(bool& first) {
+  for (const GltfImage& image : layout_.images) {
+    if (image.bytes.empty()) continue;
+    out_.separate(first);
+    out_.key_integer(R"({"buffer":0,"byteOffset":)", image.begin);
+    out_.key_integer(R"(,"byteLength":)", image.bytes.size());
+    out_.text("}");
+  }
 }
 
 void Document::write_accessors() {
@@ -311,7 +364,7 @@ void Document::write_accessors() {
   write_list_accessors();
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     for (std::uint32_t c = 0; c < walls_[w].chunk_count(); ++c) {
-      if (has_mesh(w, c)) write_vertex_accessors(walls_[w], c, layout_.first_vertex[w]);
+      if (has_mesh(w, c)) write_vertex_accessors(w, c);
     }
   }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -337,9 +390,9 @@ void Document::write_list_accessors() {
   }
 }
 
-void Document::write_vertex_accessors(const WallView& wall, std::uint32_t chunk,
-                                      std::uint64_t first) {
-  const std::uint64_t vertex = first + wall.vertex_begin[chunk];
+void Document::write_vertex_accessors(std::size_t w, std::uint32_t chunk) {
+  const WallView& wall = walls_[w];
+  const std::uint64_t vertex = layout_.first_vertex[w] + wall.vertex_begin[chunk];
   const std::uint64_t count = wall.vertex_count(chunk);
   out_.separate(first_accessor_);
   out_.text(R"({"bufferView":0,"byteOffset":)");
@@ -357,6 +410,10 @@ void Document::write_vertex_accessors(const WallView& wall, std::uint32_t chunk,
   out_.text(R"(,"componentType":5126,"count":)");
   out_.integer(count);
   out_.text(R"(,"type":"VEC2"})");
+  if (wall.colours.empty()) return;
+  out_.accessor(layout_[GltfBlock::colours].view,
+                12 * (layout_.first_colour[w] + wall.vertex_begin[chunk]), count,
+                R"(,"componentType":5126,"type":"VEC3"})", first_accessor_);
 }
 
 void Document::write_bond_accessors(std::size_t w) {
@@ -405,6 +462,7 @@ void Document::write_views() {
                                 GltfBlock::rotations, GltfBlock::weights}) {
     write_view(block, "", first);
   }
+  write_image_views(first);
   out_.text("]");
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "io/image_file.hpp"
 #include "meshing/trig.hpp"
 
 namespace sunder {
@@ -10,8 +11,7 @@ namespace {
 
 constexpr std::uint64_t kBondBytes = 8 + 4 + 12 + 12;
 
-std::uint32_t id_of(std::vector<GltfMaterial>& materials, const std::string& name, GltfUse use) {
-  const GltfMaterial material{name, use};
+std::uint32_t id_of(std::vector<ViewMaterial>& materials, const ViewMaterial& material) {
   const auto id = std::ranges::find(materials, material) - materials.begin();
   if (id == std::ssize(materials)) materials.push_back(material);
   return static_cast<std::uint32_t>(id);
@@ -20,20 +20,31 @@ std::uint32_t id_of(std::vector<GltfMaterial>& materials, const std::string& nam
 void lay_out_materials(std::span<const WallView> walls, GltfLayout& layout) {
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const WallView& wall = walls[w];
-    const auto& lists = layout.lists.of_wall[w];
-    GltfLayout::MaterialIds ids;
+    const std::vector<std::uint32_t>& lists = layout.lists.of_wall[w];
+    std::vector<std::uint32_t>& ids =
+        layout.materials_of.emplace_back(wall.materials.size(), kUnused);
     for (std::uint32_t c = 0; c < wall.chunk_count(); ++c) {
-      const bool outer = is_drawn(wall, lists, wall.outer[c]);
-      const bool inner = is_drawn(wall, lists, wall.inner[c]);
-      if (outer && ids.outer == kUnused) {
-        ids.outer = id_of(layout.materials, wall.material, GltfUse::outer);
+      bool is_drawn = false;
+      for (const ViewPart& part : wall.parts_of(c)) {
+        if (lists[part.list] == kUnused) continue;
+        is_drawn = true;
+        std::uint32_t& id = ids[part.material];
+        if (id == kUnused) id = id_of(layout.materials, wall.materials[part.material]);
       }
-      if (inner && ids.inner == kUnused) {
-        ids.inner = id_of(layout.materials, wall.material, GltfUse::inner);
-      }
-      if (outer || inner) ++layout.mesh_count;
+      if (is_drawn) ++layout.mesh_count;
+      if (is_drawn && !wall.colours.empty()) ++layout.coloured_count;
     }
-    layout.materials_of.push_back(ids);
+  }
+}
+
+void lay_out_images(GltfLayout& layout, bool embeds) {
+  for (const ViewMaterial& material : layout.materials) {
+    if (material.image.empty() ||
+        std::ranges::find(layout.images, material.image, &GltfImage::image) != layout.images.end())
+      continue;
+    GltfImage image{material.image, material.uri, {}, mime_of_image(material.image), 0};
+    if (embeds) image.bytes = read_bytes(material.image);
+    layout.images.push_back(std::move(image));
   }
 }
 
@@ -45,7 +56,7 @@ void lay_out_spheres(const Recording& recording, GltfLayout& layout) {
     if (found == layout.radii.end()) layout.radii.push_back(radius);
   }
   if (!layout.radii.empty()) {
-    layout.sphere_material = id_of(layout.materials, "steel", GltfUse::outer);
+    layout.sphere_material = id_of(layout.materials, outer_material("steel"));
   }
 }
 
@@ -53,21 +64,23 @@ void lay_out_parts(const Recording& recording, GltfLayout& layout) {
   layout.parts = plan_parts(recording, layout.step);
   for (GltfParts::Shape& shape : layout.parts.shapes) {
     const RecordedPart& part = recording.parts[shape.part];
-    const GltfUse use = part.has_ends ? GltfUse::member : GltfUse::outer;
-    shape.material = id_of(layout.materials, part.material, use);
+    shape.material = id_of(layout.materials, part.has_ends ? member_material(part.material)
+                                                           : outer_material(part.material));
   }
 }
 
 struct Sizes {
-  std::uint64_t vertices = 0, bonds = 0, indices = 0;  // of walls; the last two in bytes
+  std::uint64_t vertices = 0, coloured = 0, bonds = 0, indices = 0;  // the last two in bytes
 };
 
 Sizes lay_out_walls(std::span<const WallView> walls, GltfLayout& layout) {
   Sizes sizes;
   for (const WallView& wall : walls) {
     layout.first_vertex.push_back(sizes.vertices);
+    layout.first_colour.push_back(sizes.coloured);
     layout.bonds_begin.push_back(sizes.bonds);
     sizes.vertices += wall.vertex_begin.back();
+    if (!wall.colours.empty()) sizes.coloured += wall.vertex_begin.back();
     sizes.bonds += wall.bonds.size() * kBondBytes;
   }
   for (const UniqueLists::List& list : layout.lists.lists) {
@@ -92,7 +105,7 @@ std::array<std::uint64_t, kGltfBlocks> lay_out_blocks(const Sizes& walls, GltfLa
   return {12 * (layout.first_part_position + parts.vertex_count + parts.still_count),
           12 * (layout.first_part_normal + parts.vertex_count),
           8 * (layout.first_part_uv + parts.vertex_count),
-          12 * parts.colour_count,
+          12 * (walls.coloured + parts.colour_count),
           layout.part_list_begin + parts.index_bytes,
           walls.bonds,
           4 * (layout.common_times() + parts.key_count),
@@ -104,7 +117,7 @@ std::array<std::uint64_t, kGltfBlocks> lay_out_blocks(const Sizes& walls, GltfLa
 }  // namespace
 
 GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording,
-                        std::optional<std::uint32_t> step) {
+                        std::optional<std::uint32_t> step, bool embeds) {
   GltfLayout layout;
   layout.recording = recording;
   layout.step = step;
@@ -121,6 +134,11 @@ GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* record
   for (std::size_t i = 0; i < kGltfBlocks; ++i) {
     layout.blocks[i] = {layout.binary_size, sizes[i], sizes[i] > 0 ? views++ : kUnused};
     layout.binary_size += sizes[i];
+  }
+  lay_out_images(layout, embeds);
+  for (GltfImage& image : layout.images) {
+    image.begin = layout.binary_size;
+    layout.binary_size += (image.bytes.size() + 3) / 4 * 4;
   }
   return layout;
 }

@@ -34,13 +34,13 @@ enum class GltfBlock {
 };
 constexpr std::size_t kGltfBlocks = 10;
 
-/// What a material is for: the old or the broken faces of a wall, or members, whose own colour is
-/// in their vertices.
-enum class GltfUse { outer, inner, member };
-struct GltfMaterial {
-  std::string name;
-  GltfUse use = GltfUse::outer;
-  friend bool operator==(const GltfMaterial&, const GltfMaterial&) = default;
+/// A picture that materials refer to.
+struct GltfImage {
+  std::string image;             ///< path of the file
+  std::string uri;               ///< as the document refers to it, if not embedded
+  std::vector<std::byte> bytes;  ///< embedded
+  std::string mime;
+  std::uint64_t begin = 0;  ///< in the binary
 };
 
 /// Everything about a glTF file that is known before its first byte is written. Bytes of the
@@ -50,17 +50,15 @@ struct GltfLayout {
     std::uint64_t begin = 0, size = 0;
     std::uint32_t view = kUnused;  ///< bufferView; kUnused: the block is empty
   };
-  struct MaterialIds {
-    std::uint32_t outer = kUnused, inner = kUnused;
-  };
-
   UniqueLists lists;
   std::vector<std::uint64_t> list_begin;    // bytes into the index block
   std::vector<std::uint64_t> first_vertex;  // per wall
   std::vector<std::uint64_t> bonds_begin;   // per wall, bytes into the bond block
-  std::vector<GltfMaterial> materials;
-  std::vector<MaterialIds> materials_of;  // per wall
-  std::uint64_t mesh_count = 0;           // of chunks
+  std::vector<std::uint64_t> first_colour;  // per wall: vertices into the colour block
+  std::vector<ViewMaterial> materials;
+  std::vector<std::vector<std::uint32_t>> materials_of;  // per wall: its material → one of these
+  std::vector<GltfImage> images;                         // distinct ones of materials
+  std::uint64_t mesh_count = 0, coloured_count = 0;      // of chunks
   std::array<Block, kGltfBlocks> blocks;
   std::uint64_t binary_size = 0;
 
@@ -82,15 +80,10 @@ struct GltfLayout {
   std::uint64_t common_times() const { return animation.empty() ? 0 : animation.steps.size(); }
 };
 
-/// `step`, of the recording: the file shows that moment instead of the motion.
+/// `step`, of the recording: the file shows that moment instead of the motion. `embeds`: images go
+/// into the binary. Throws Error{output} for an image that cannot be read.
 GltfLayout lay_out_gltf(std::span<const WallView> walls, const Recording* recording,
-                        std::optional<std::uint32_t> step);
-
-/// A wall's chunk has triangles of this list (see RenderMeshes::outer, inner).
-inline bool is_drawn(const WallView& wall, const std::vector<std::uint32_t>& lists,
-                     std::uint32_t list) {
-  return list < wall.lists.size() && lists[list] != kUnused;
-}
+                        std::optional<std::uint32_t> step, bool embeds);
 
 /// The sphere of radius 1 that stands for projectiles: rings of latitude about the y axis.
 struct SphereMesh {

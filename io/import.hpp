@@ -13,17 +13,18 @@ namespace sunder {
 /// One chunk as a file holds it: float32 positions with repeats, as triangles.
 struct ImportedChunk {
   std::string name;
-  std::vector<float> positions;              ///< 3 per vertex, wall frame (node above applied: no)
-  std::vector<std::uint32_t> triangles;      ///< 3 per triangle
-  std::vector<std::uint8_t> inner;           ///< per triangle: 1 if its material is an inner one
+  std::vector<float> positions;          ///< 3 per vertex, wall frame (node above applied: no)
+  std::vector<std::uint32_t> triangles;  ///< 3 per triangle
+  std::vector<std::uint8_t> inner;       ///< per triangle: 1 if its material is an inner one
 };
 
 /// A wall's chunks and what its extras say; a format without extras leaves NaN.
 struct ImportedWall {
   std::string name;
-  std::string material;                ///< "" if the format has none
+  std::string material;  ///< "" if the format has none
+  SoupWall::Kind kind = SoupWall::Kind::unknown;
   std::vector<ImportedChunk> chunks;
-  double volume_expected = 0;          ///< m³, NaN: the file does not say
+  double volume_expected = 0;  ///< m³, NaN: the file does not say
   std::uint64_t bonds = 0;
 };
 
@@ -39,6 +40,9 @@ struct ImportLimits {
   double seconds = 60;                            ///< processor time of the reader
   std::uint64_t file_size = std::uint64_t{2} << 30;
 };
+
+/// Suffixes that are read: .glb .gltf .obj .stl .ply
+bool is_import_suffix(const std::string& suffix);
 
 /// A wall of it as a soup; both must outlive it.
 SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall);

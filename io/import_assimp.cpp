@@ -1,158 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cstring>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "io/export_files.hpp"
 #include "io/import.hpp"
-#include "io/reader_process.hpp"
+#include "io/imported_asset.hpp"
+#include "io/scene_file.hpp"
 #include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
 
-// --- files the readers may open
-// -------------------------------------------------------------------
-
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(ErrorCode::input, what);
-}
-
-class InputStream : public Assimp::IOStream {
- public:
-  explicit InputStream(std::string content) : content_(std::move(content)) {}
-  std::size_t Read(void* out, std::size_t size, std::size_t count) override {
-    if (size == 0) return 0;
-    const std::size_t items = std::min(count, (content_.size() - at_) / size);
-    std::memcpy(out, content_.data() + at_, items * size);
-    at_ += items * size;
-    return items;
-  }
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-    const std::size_t from = origin == aiOrigin_CUR   ? at_
-                             : origin == aiOrigin_END ? content_.size()
-                                                      : 0;
-    if (offset > content_.size() - from) return aiReturn_FAILURE;
-    at_ = from + offset;
-    return aiReturn_SUCCESS;
-  }
-  std::size_t Tell() const override { return at_; }
-  std::size_t FileSize() const override { return content_.size(); }
-  void Flush() override {}
-
- private:
-  std::string content_;
-  std::size_t at_ = 0;
-};
-
-// Only regular files inside the asset's folder, wherever links and ".." lead; never a scheme, never
-// a device.
-class FolderFiles : public Assimp::IOSystem {
- public:
-  FolderFiles(const std::filesystem::path& file, std::uint64_t limit)
-      : folder_(std::filesystem::canonical(file).parent_path()),
-        given_(file.parent_path()),
-        limit_(limit) {}
-  bool Exists(const char* path) const override { return locate(path).has_value(); }
-  char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* path, const char* mode) override {
-    const auto found = locate(path);
-    if (!found || std::strchr(mode, 'w') != nullptr) return nullptr;
-    std::optional<std::string> content = read(*found);
-    return content ? new InputStream(std::move(*content)) : nullptr;
-  }
-  void Close(Assimp::IOStream* stream) override { delete stream; }
-
- private:
-  std::optional<std::filesystem::path> locate(const std::string& name) const {
-    if (auto found = confined(name)) return found;
-    return name.find('%') == std::string::npos ? std::nullopt : confined(percent_decoded(name));
-  }
-
-  std::optional<std::filesystem::path> confined(const std::filesystem::path& name) const {
-    std::error_code error;
-    std::filesystem::path found = std::filesystem::canonical(name, error);
-    if (error) found = std::filesystem::canonical(given_ / name, error);
-    if (error || !std::filesystem::is_regular_file(found, error)) return std::nullopt;
-    const auto [end, ignored] =
-        std::mismatch(folder_.begin(), folder_.end(), found.begin(), found.end());
-    if (end != folder_.end()) return std::nullopt;
-    return found;
-  }
-
-  static std::string percent_decoded(const std::string& name) {
-    const auto digit = [](char c) {
-      return c >= '0' && c <= '9'                 ? c - '0'
-             : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 87
-                                                  : -1;
-    };
-    std::string text;
-    for (std::size_t i = 0; i < name.size(); ++i) {
-      const bool code = name[i] == '%' && i + 2 < name.size() && digit(name[i + 1]) >= 0 &&
-                        digit(name[i + 2]) >= 0;
-      text += code ? static_cast<char>(16 * digit(name[i + 1]) + digit(name[i + 2])) : name[i];
-      if (code) i += 2;
-    }
-    return text;
-  }
-
-  std::optional<std::string> read(const std::filesystem::path& path) const {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (file < 0) return std::nullopt;
-    struct stat info = {};
-    std::optional<std::string> content;
-    if (::fstat(file, &info) == 0 && S_ISREG(info.st_mode) &&
-        static_cast<std::uint64_t>(info.st_size) <= limit_) {
-      content.emplace(static_cast<std::size_t>(info.st_size), '\0');
-      std::size_t at = 0;
-      while (at < content->size()) {
-        const ssize_t count = ::read(file, content->data() + at, content->size() - at);
-        if (count <= 0) break;
-        at += static_cast<std::size_t>(count);
-      }
-      content->resize(at);
-    }
-    ::close(file);
-    return content;
-  }
-
-  std::filesystem::path folder_, given_;
-  std::uint64_t limit_;
-};
-
-// --- aiScene → ImportedAsset
-// ----------------------------------------------------------------------
-
-// Leaves the one reader that the suffix names; assimp would else let any of its fifty try.
-void keep_only(Assimp::Importer& importer, const std::string& suffix) {
-  std::string word = suffix + " ";
-  word.front() = ' ';
-  std::vector<Assimp::BaseImporter*> others;
-  for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
-    const aiImporterDesc* description = importer.GetImporterInfo(i);
-    std::string words = description->mFileExtensions;
-    words.insert(0, 1, ' ').push_back(' ');
-    const bool named = words.find(word) != std::string::npos;
-    const bool first_gltf = std::strcmp(description->mName, "glTF Importer") == 0;
-    if (!named || first_gltf) others.push_back(importer.GetImporter(i));
-  }
-  // Unregistered readers are not freed; this process ends with the file.
-  for (Assimp::BaseImporter* other : others) importer.UnregisterLoader(other);
 }
 
 const aiMetadata* group(const aiMetadata* data, const char* key) {
@@ -178,6 +45,14 @@ std::optional<double> number(const aiMetadata* data, const char* key) {
     }
   }
   return std::nullopt;
+}
+
+bool is_text(const aiMetadata* data, const char* key, const char* text) {
+  for (unsigned i = 0; data != nullptr && i < data->mNumProperties; ++i) {
+    if (data->mKeys[i] == aiString(key) && data->mValues[i].mType == AI_AISTRING)
+      return *static_cast<const aiString*>(data->mValues[i].mData) == aiString(text);
+  }
+  return false;
 }
 
 // Appends a mesh; the two halves of a chunk that share their vertices in the file share them here.
@@ -216,14 +91,23 @@ class Flattener {
     return scene_.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
   }
 
+  static ImportedWall unmarked(std::string name) {
+    ImportedWall wall;
+    wall.name = std::move(name);
+    wall.volume_expected = std::numeric_limits<double>::quiet_NaN();
+    return wall;
+  }
+
   std::size_t wall_named(const std::string& name) {
     const auto [found, added] = by_name_.emplace(name, asset_.walls.size());
-    if (added) asset_.walls.push_back({name, "", {}, std::numeric_limits<double>::quiet_NaN(), 0});
+    if (added) asset_.walls.push_back(unmarked(name));
     return found->second;
   }
 
   std::size_t wall_marked(const aiNode& node, const aiMetadata* extras) {
-    ImportedWall wall{node.mName.C_Str(), "", {}, std::numeric_limits<double>::quiet_NaN(), 0};
+    ImportedWall wall = unmarked(node.mName.C_Str());
+    if (number(extras, "thickness")) wall.kind = SoupWall::Kind::wall;
+    if (is_text(extras, "kind", "solid")) wall.kind = SoupWall::Kind::solid;
     wall.volume_expected = number(extras, "volume_expected").value_or(wall.volume_expected);
     const double bonds = number(group(extras, "bonds"), "count").value_or(0);
     wall.bonds = bonds >= 0 && bonds < 1e15 ? static_cast<std::uint64_t>(bonds) : 0;
@@ -269,11 +153,8 @@ class Flattener {
 ImportedAsset read_with_assimp(const std::filesystem::path& path, const std::string& suffix,
                                const ImportLimits& limits) {
   Assimp::Importer importer;
-  keep_only(importer, suffix);
-  importer.SetIOHandler(new FolderFiles(path, limits.file_size));  // owns it
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
-  if (scene == nullptr) refuse(importer.GetErrorString());
-  ImportedAsset asset = Flattener(*scene, path.stem().string()).run();
+  const aiScene& scene = read_scene_file(importer, path, limits);
+  ImportedAsset asset = Flattener(scene, path.stem().string()).run();
   const bool empty = std::ranges::all_of(asset.walls, [](const ImportedWall& wall) {
     return std::ranges::all_of(wall.chunks, [](const auto& chunk) { return chunk.inner.empty(); });
   });
@@ -289,6 +170,7 @@ SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall) {
   SoupWall soup;
   soup.chunk_count = static_cast<std::uint32_t>(wall.chunks.size());
   soup.has_chunks = asset.has_chunks;
+  soup.kind = wall.kind;
   soup.bonds = wall.bonds;
   soup.volume_expected = wall.volume_expected;
   soup.chunk = [&wall, &asset](std::uint32_t c) {
@@ -301,23 +183,17 @@ SoupWall soup_of(const ImportedAsset& asset, const ImportedWall& wall) {
 
 ImportedAsset import_asset(const std::filesystem::path& path, ImportLimits limits) {
   const std::string suffix = suffix_of(path);
-  const std::string name = path.string();
-  constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl", ".ply"};
-  if (std::ranges::find(kSuffixes, suffix) == std::end(kSuffixes)) {
-    throw Error(ErrorCode::usage,
-                name + ": suffix \"" + suffix + "\" is not one of .glb .gltf .obj .stl .ply");
-  }
-  struct stat info = {};
-  if (::stat(path.c_str(), &info) != 0) refuse(name + ": " + std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) refuse(name + ": is not a regular file");
-  if (static_cast<std::uint64_t>(info.st_size) > limits.file_size) {
-    refuse(name + ": has " + std::to_string(info.st_size) + " bytes, at most " +
-           std::to_string(limits.file_size) + " are read");
-  }
-  // A sound file takes a tenth of this; one that lies about its size would use up the whole limit.
-  const double megabytes = static_cast<double>(info.st_size) * 0x1p-20;
-  limits.seconds = std::min(limits.seconds, 5 + 0.5 * megabytes);
-  return run_reader(name, limits, [&] { return read_with_assimp(path, suffix, limits); });
+  limit_to_file(path, limits);
+  ImportedAsset asset;
+  run_reader(
+      path.string(), limits,
+      [&] {
+        return [read = read_with_assimp(path, suffix, limits)](AnswerWriter& out) {
+          send_asset(read, out);
+        };
+      },
+      [&](AnswerReader& in) { asset = receive_asset(in); });
+  return asset;
 }
 
 }  // namespace sunder

@@ -179,6 +179,19 @@ std::vector<Vec2> pairs_at(const Place& place, std::size_t least, const Range& r
   return pairs;
 }
 
+std::vector<Vec3> triples_at(const Place& place, std::size_t least, const Range& range,
+                             std::string_view unit) {
+  if (list_at(place).size() < least) {
+    place.fail_kind("a list of at least " + std::to_string(least) + " points [x, y, z]");
+  }
+  std::vector<Vec3> triples;
+  triples.reserve(place.value.items()->size());
+  for (std::size_t i = 0; i < place.value.items()->size(); ++i) {
+    triples.push_back(triple_at(Place(place, i), range, unit));
+  }
+  return triples;
+}
+
 void check_keys(const Place& object, std::span<const std::string_view> valid) {
   for (const JsonMember& member : object_at(object)) {
     if (std::find(valid.begin(), valid.end(), member.key) == valid.end()) {

@@ -57,9 +57,11 @@ std::vector<std::string> texts_at(const Place& place, std::span<const std::strin
 /// A list of exactly two or three numbers.
 Vec2 pair_at(const Place& place, const Range& range, std::string_view unit);
 Vec3 triple_at(const Place& place, const Range& range, std::string_view unit);
-/// List of at least `least` pairs.
+/// List of at least `least` pairs or triples.
 std::vector<Vec2> pairs_at(const Place& place, std::size_t least, const Range& range,
                            std::string_view unit);
+std::vector<Vec3> triples_at(const Place& place, std::size_t least, const Range& range,
+                             std::string_view unit);
 
 /// Throws at the first member whose key is not valid, with "did you mean".
 void check_keys(const Place& object, std::span<const std::string_view> valid);
@@ -81,6 +83,10 @@ void read_field(Params& params, const Field<Params>& field, const Place& place) 
       params.*member = text_at(place, field.choices);
     } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
       params.*member = texts_at(place, field.choices);
+    } else if constexpr (std::is_same_v<T, Vec3>) {
+      params.*member = triple_at(place, field.range, field.unit);
+    } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
+      params.*member = triples_at(place, field.required ? 1 : 0, field.range, field.unit);
     } else {
       params.*member = pairs_at(place, field.required ? 1 : 0, field.range, field.unit);
     }

@@ -79,6 +79,18 @@ struct Solid {
   std::span<const Colour> colours;
 };
 
+// A wall's colours of a chunk's vertices in sRGB, empty if it has none; `colours` holds them.
+std::span<const Colour> srgb_colours(const WallView& wall, std::size_t begin, std::size_t count,
+                                     std::vector<Colour>& colours) {
+  colours.clear();
+  for (std::size_t v = begin; !wall.colours.empty() && v < begin + count; ++v) {
+    const std::span<const float> c = wall.colours.subspan(4 * v, 3);
+    const auto channel = [](float value) { return srgb_channel(static_cast<double>(value)); };
+    colours.push_back({channel(c[0]), channel(c[1]), channel(c[2])});
+  }
+  return colours;
+}
+
 class ObjWriter {
  public:
   ObjWriter(ByteSink& sink, const std::string& material_file) : out_(sink) {
@@ -91,20 +103,18 @@ class ObjWriter {
   template <class PoseOfChunk>
   void write_wall(const WallView& wall, const PoseOfChunk& pose_of_chunk) {
     ChunkNames name(wall.first_chunk);
-    const std::string material = obj_name(wall.material);
+    std::vector<std::string> materials;
+    for (const ViewMaterial& material : wall.materials)
+      materials.push_back(obj_name(material.name));
+    std::vector<Colour> colours;
     for (std::uint32_t chunk = 0; chunk < wall.chunk_count(); ++chunk, ++name) {
       const std::size_t begin = wall.vertex_begin[chunk], count = wall.vertex_count(chunk);
-      start({*name,
-             pose_of_chunk(chunk),
-             wall.positions.subspan(3 * begin, 3 * count),
-             wall.normals.subspan(3 * begin, 3 * count),
-             wall.uvs.subspan(2 * begin, 2 * count),
-             {}});
-      for (const auto& [list, side] :
-           {std::pair(wall.outer[chunk], "_outer"), std::pair(wall.inner[chunk], "_inner")}) {
-        if (list == RenderMeshes::kNoList) continue;
-        const IndexList range = wall.lists[list];
-        write_faces(wall.indices.subspan(range.begin, range.count), material, side);
+      start({*name, pose_of_chunk(chunk), wall.positions.subspan(3 * begin, 3 * count),
+             wall.normals.subspan(3 * begin, 3 * count), wall.uvs.subspan(2 * begin, 2 * count),
+             srgb_colours(wall, begin, count, colours)});
+      for (const ViewPart& part : wall.parts_of(chunk)) {
+        const IndexList range = wall.lists[part.list];
+        write_faces(wall.indices.subspan(range.begin, range.count), materials[part.material]);
       }
     }
   }
@@ -119,12 +129,10 @@ class ObjWriter {
     out_.text("\n");
     write_vertices(solid);
   }
-  void write_faces(std::span<const std::uint32_t> indices, std::string_view material,
-                   std::string_view side) {
+  void write_faces(std::span<const std::uint32_t> indices, std::string_view material) {
     if (indices.empty()) return;
     out_.text("usemtl ");
     out_.text(material);
-    out_.text(side);
     out_.text("\n");
     for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
       out_.text("f");
@@ -208,7 +216,7 @@ void write_spheres(const RecordedMoment& moment, ObjWriter& out) {
     }
     const Pose pose = pose_of(moment.recording, projectile, moment.step);
     out.start({projectile.projectile.name, pose, positions, normals, {}, {}});
-    out.write_faces(indices, "steel", "_outer");
+    out.write_faces(indices, "steel_outer");
   }
 }
 
@@ -229,23 +237,30 @@ void write_parts(const RecordedMoment& moment, ObjWriter& out) {
     }
     out.start({part.name, pose_of(recording, part, moment.step), shape.positions, shape.normals,
                shape.uvs, colours});
-    out.write_faces(shape.indices, obj_name(part.material), part.has_ends ? "" : "_outer");
+    out.write_faces(shape.indices, obj_name(part.material) + (part.has_ends ? "" : "_outer"));
   }
 }
 
-void write_material(TextWriter& out, const std::string& name,
-                    const std::array<std::uint8_t, 3>& rgb, double roughness, double metallic) {
+void write_material(TextWriter& out, const std::string& name, const ViewMaterial& material) {
   out.text("newmtl ");
   out.text(name);
   out.text("\nKd");
-  for (const std::uint8_t channel : rgb) {
+  for (const double channel : material.colour) {
     out.text(" ");
-    out.number(linear(channel));
+    out.number(channel);
+  }
+  if (material.alpha < 1) {
+    out.text("\nd ");
+    out.number(material.alpha);
   }
   out.text("\nPr ");
-  out.number(roughness);
+  out.number(material.roughness);
   out.text("\nPm ");
-  out.number(metallic);
+  out.number(material.metallic);
+  if (!material.uri.empty()) {
+    out.text("\nmap_Kd ");
+    out.text(material.uri);
+  }
   out.text("\n\n");
 }
 
@@ -260,28 +275,13 @@ class MtlWriter {
  public:
   explicit MtlWriter(ByteSink& sink) : out_(sink) { out_.text("# sunder " SUNDER_VERSION "\n"); }
 
-  void write_wall(const std::string& material) {
-    write_outer(material);
-    const MaterialLook look = look_of(material);
-    write(material, "_inner", look.inner, look.inner_roughness, look.metallic);
-  }
-  void write_outer(const std::string& material) {
-    const MaterialLook look = look_of(material);
-    write(material, "_outer", look.outer, look.outer_roughness, look.metallic);
-  }
-  // White: the colour is in the vertices.
-  void write_member(const std::string& material) {
-    const MemberLook look = member_look(material);
-    write(material, "", {255, 255, 255}, look.roughness, look.metallic);
+  void write(const ViewMaterial& material) {
+    const std::string name = obj_name(material.name);
+    if (written_.insert(name).second) write_material(out_, name, material);
   }
   void finish() { out_.flush(); }
 
  private:
-  void write(const std::string& material, std::string_view side,
-             const std::array<std::uint8_t, 3>& rgb, double roughness, double metallic) {
-    const std::string name = obj_name(material).append(side);
-    if (written_.insert(name).second) write_material(out_, name, rgb, roughness, metallic);
-  }
   TextWriter out_;
   std::set<std::string> written_;
 };
@@ -291,6 +291,8 @@ class MtlWriter {
 void write_obj(std::span<const WallView> walls, const std::string& material_file, ByteSink& sink) {
   check_name(material_file);
   ObjWriter out(sink, material_file);
+  if (std::ranges::any_of(walls, [](const WallView& wall) { return !wall.colours.empty(); }))
+    out.colour_all();
   for (const WallView& wall : walls) {
     out.write_wall(wall, [&wall](std::uint32_t) { return Pose{wall.position, wall.rotation}; });
   }
@@ -317,20 +319,20 @@ void write_obj(std::span<const WallView> walls, const RecordedMoment& moment,
 
 void write_mtl(std::span<const WallView> walls, ByteSink& sink) {
   MtlWriter out(sink);
-  for (const WallView& wall : walls) out.write_wall(wall.material);
+  for (const WallView& wall : walls) {
+    for (const ViewMaterial& material : wall.materials) out.write(material);
+  }
   out.finish();
 }
 
 void write_mtl(std::span<const WallView> walls, const RecordedMoment& moment, ByteSink& sink) {
   MtlWriter out(sink);
-  for (const WallView& wall : walls) out.write_wall(wall.material);
-  if (!moment.recording.projectiles.empty()) out.write_outer("steel");
+  for (const WallView& wall : walls) {
+    for (const ViewMaterial& material : wall.materials) out.write(material);
+  }
+  if (!moment.recording.projectiles.empty()) out.write(outer_material("steel"));
   for (const RecordedPart& part : moment.recording.parts) {
-    if (part.has_ends) {
-      out.write_member(part.material);
-    } else {
-      out.write_outer(part.material);
-    }
+    out.write(part.has_ends ? member_material(part.material) : outer_material(part.material));
   }
   out.finish();
 }

@@ -54,8 +54,14 @@ DocRow doc_row(const FieldRow& field) {
     } else if constexpr (std::is_same_v<T, std::string>) {
       row.type = "text";
       row.default_value = code(value);
+    } else if constexpr (std::is_same_v<T, Vec3>) {
+      row.type = "[x, y, z]";
+      row.default_value = "`[" + number_text(value.x) + ", " + number_text(value.y) + ", " +
+                          number_text(value.z) + "]`";
     } else {
-      row.type = std::is_same_v<T, std::vector<Vec2>> ? "list of [x, y]" : "list of texts";
+      row.type = std::is_same_v<T, std::vector<Vec2>>   ? "list of [x, y]"
+                 : std::is_same_v<T, std::vector<Vec3>> ? "list of [x, y, z]"
+                                                        : "list of texts";
       row.default_value = "`[]`";
     }
   };
@@ -80,16 +86,32 @@ void append_rows(std::vector<DocRow>& rows, std::span<const SceneKey> keys) {
   }
 }
 
-std::string pattern_tables() {
+std::string pattern_tables(const std::string& heading,
+                           std::span<const std::vector<FieldRow>> patterns,
+                           std::span<const std::string_view> types,
+                           std::span<const std::string_view> effects) {
   std::string text;
-  const auto patterns = pattern_rows();
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     std::vector<DocRow> rows;
     append_rows(rows, patterns[i]);
-    text += "### Pattern " + code(kPatternTypes[i]) + "\n\n" + std::string(kPatternEffects[i]) +
-            "\n\n" + table(rows);
+    text += "### " + heading + ' ' + code(types[i]) + "\n\n" + std::string(effects[i]) + "\n\n" +
+            table(rows);
   }
   return text;
+}
+
+std::string solid_tables() {
+  std::vector<DocRow> rows;
+  append_rows(rows, field_rows<SolidModel>());
+  append_rows(rows, kSolidKeys);
+  std::string text =
+      "## Solid\n\nA closed mesh from a file, fractured as a whole.\n\n" + table(rows);
+  rows.clear();
+  append_rows(rows, kCraterKeys);
+  append_rows(rows, field_rows<CarveParams>());
+  text += "### Crater\n\n" + table(rows);
+  return text + pattern_tables("Solid pattern", pattern_rows<SolidPatternParams>(),
+                               kSolidPatternTypes, kSolidPatternEffects);
 }
 
 std::string materials_table() {
@@ -219,7 +241,8 @@ std::string parameters_markdown() {
   rows.clear();
   append_rows(rows, kShapeKeys);
   text += table(rows) + "## Pattern\n\nThe key `type` is required and chooses the others.\n\n";
-  text += pattern_tables() + run_tables() + "## Material\n\n";
+  text += pattern_tables("Pattern", pattern_rows<PatternParams>(), kPatternTypes, kPatternEffects) +
+          solid_tables() + run_tables() + "## Material\n\n";
   rows.clear();
   append_rows(rows, field_rows<Material>());
   return text + table(rows) + "## Built-in materials\n\n" + materials_table();

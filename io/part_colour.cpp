@@ -51,4 +51,9 @@ MemberLook member_look(std::string_view material) {
   return member;
 }
 
+ViewMaterial member_material(const std::string& material) {
+  const MemberLook look = member_look(material);
+  return {.name = material, .metallic = look.metallic, .roughness = look.roughness};
+}
+
 }  // namespace sunder

@@ -36,5 +36,7 @@ struct MemberLook {
   double roughness = 0.5, metallic = 0;
 };
 MemberLook member_look(std::string_view material);
+/// White: the colour is in the vertices.
+ViewMaterial member_material(const std::string& material);
 
 }  // namespace sunder

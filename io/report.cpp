@@ -15,6 +15,16 @@ std::string exact(double value) {
   return {buffer, put_exact(buffer, value)};
 }
 
+// Only quotes and backslashes need care: the texts are our own and names.
+std::string quoted_json(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 // Builds one JSON object, a key per line.
 class JsonObject {
  public:
@@ -33,6 +43,28 @@ class JsonObject {
  private:
   std::string text_, indent_;
 };
+
+std::string repair_json(const ReportedRepair& reported) {
+  const Repair& repair = reported.repair;
+  std::string steps;
+  for (const std::string& step : repair.steps)
+    steps += (steps.empty() ? "" : ", ") + quoted_json(step);
+  JsonObject json(3);
+  json.add("solid", quoted_json(reported.solid));
+  json.add("found", quoted_json(repair.before.text()));
+  json.add("steps", '[' + steps + ']');
+  json.add("volume_before", repair.volume_before);
+  json.add("volume_after", repair.volume_after);
+  json.add("hausdorff", repair.hausdorff);
+  json.add("voxel", repair.voxel);
+  return json.close();
+}
+
+std::string repairs_json(const std::vector<ReportedRepair>& repairs) {
+  std::string list;
+  for (const ReportedRepair& each : repairs) list += (list.empty() ? "" : ", ") + repair_json(each);
+  return '[' + list + ']';
+}
 
 }  // namespace
 
@@ -63,6 +95,7 @@ std::string report_json(const Report& report) {
   json.add("slivers_merged", report.slivers_merged);
   json.add("min_chunk_volume", s.min_chunk_volume);
   json.add("hash", std::string(hash));
+  json.add("repair", repairs_json(report.repairs));
   json.add("time", times.close());
   json.add("skipped", skipped.close());
   return json.close() + '\n';

@@ -29,18 +29,33 @@ constexpr ReportKey kReportKeys[] = {
     {"bonds", "integer", "Bonds between chunks and anchors to the world."},
     {"volume", "number", "Sum of the chunks' volumes. Unit: m³."},
     {"volume_expected", "number",
-     "Area of the outlines less the openings, by thickness. Unit: m³."},
+     "Of walls, area of the outlines less the openings, by thickness; of solids, volume of the "
+     "model. "
+     "Unit: m³."},
     {"volume_error", "number", "Difference of the two by the volume expected."},
     {"open_chunks", "integer", "Chunks with an edge that only one triangle has."},
     {"nonmanifold_chunks", "integer", "Chunks with an edge of more than two triangles."},
     {"inverted_chunks", "integer", "Closed chunks whose volume is not above 0."},
-    {"overlapping_pairs", "integer", "Pairs of chunks whose front faces overlap."},
+    {"overlapping_pairs", "integer",
+     "Pairs of chunks whose front faces overlap; of a solid, pairs with the same outer face."},
     {"unmatched_faces", "integer", "Inner triangles without exactly one partner in another chunk."},
-    {"slivers", "integer", "Chunks whose front is thinner than 1:50."},
-    {"slivers_merged", "integer",
-     "Cells that were merged because they were smaller than min_cell."},
+    {"slivers", "integer",
+     "Chunks whose front is thinner than 1:50; of a solid, chunks with less than a thousandth of "
+     "the volume of the cube over their diagonal."},
+    {"slivers_merged", "integer", "Cells that were merged because they were too small."},
     {"min_chunk_volume", "number", "Volume of the smallest chunk. Unit: m³."},
     {"hash", "string", "Of all triangles, bit for bit; 16 hexadecimal digits."},
+    {"repair", "array", "What was done to the models of solids that were none."},
+};
+
+constexpr ReportKey kRepairKeys[] = {
+    {"solid", "string", "Name of the solid."},
+    {"found", "string", "What was wrong with its model."},
+    {"steps", "array", "What was done, in order."},
+    {"volume_before", "number", "Volume that the model encloses, as far as it does. Unit: m³."},
+    {"volume_after", "number", "Volume of the solid made of it. Unit: m³."},
+    {"hausdorff", "number", "Largest distance between the two surfaces. Unit: m."},
+    {"voxel", "number", "Size of the level set's voxels; 0: none was needed. Unit: m."},
 };
 
 // Of every run of a simulation: first keys, then …
@@ -322,6 +337,8 @@ std::string report_schema() {
     properties[key]["type"] = {"number", "null"};
   }
   properties["hash"]["pattern"] = "^[0-9a-f]{16}$";
+  fill(properties["repair"], list_of(object_of(kRepairKeys)));
+  properties["repair"]["items"]["properties"]["steps"]["items"] = {{"type", "string"}};
   properties["time"] = {{"type", "object"},
                         {"description", "What each step took, keys end in _s. Unit: s."}};
   fill(properties["time"], seconds());

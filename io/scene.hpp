@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
 #include "sim/collapse.hpp"
 #include "sim/frame.hpp"
@@ -22,10 +23,11 @@ namespace sunder {
 struct Scene {
   std::uint64_t seed = 1;
   std::vector<Wall> walls;
+  std::vector<SolidModel> solids;
   std::vector<Material> materials;  ///< built in, then the scene's own
   std::vector<Projectile> projectiles;
-  std::optional<Frame> building;    ///< sound and joined
-  BreakingRules rules;              ///< of the building's posts and joints
+  std::optional<Frame> building;  ///< sound and joined
+  BreakingRules rules;            ///< of the building's posts and joints
   Scenario scenario;
   std::filesystem::path ground_motion_file;  ///< that the scenario names; empty: none
   SimulationParams simulation;
@@ -39,7 +41,7 @@ std::vector<std::string> given_keys(const Scene& scene,
 struct SceneParams {
   /// "a.b=value" as --set gives them, applied before checking.
   std::vector<std::string> overrides = {};
-  bool allow_outside = false;  ///< asset paths may leave the scene's folder
+  bool allow_outside = false;  ///< paths may leave the scene's folder
 };
 
 /// Reads and checks a scene. A wall that is an asset and gives no material has an empty one: that

@@ -14,6 +14,7 @@
 #include "io/scenario.hpp"
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
+#include "io/solids.hpp"
 #include "io/strict_json.hpp"
 #include "meshing/error.hpp"
 
@@ -188,9 +189,18 @@ Scene read_tree(const Place& place, const SceneFolder& folder) {
   const JsonValue* walls = place.value.find("walls");
   const WallContext context{scene.materials, folder};
   if (walls) read_walls(scene, Place(place, "walls", *walls), context);
-  if (scene.walls.empty() && !place.value.find("building")) {
+  if (const JsonValue* solids = place.value.find("solids")) {
+    std::unordered_set<std::string> names;
+    for (const Wall& wall : scene.walls) names.insert(wall.name);
+    scene.solids =
+        read_solids(Place(place, "solids", *solids), scene.materials, folder, std::move(names));
+  }
+  if (scene.walls.empty() && scene.solids.empty() && !place.value.find("building")) {
     const std::string example = "for example \"walls\": [{\"outline\": {\"rect\": [6, 3]}}]";
-    if (walls) Place(place, "walls", *walls).fail("no wall and no building, " + example);
+    if (const JsonValue* solids = place.value.find("solids")) {
+      Place(place, "solids", *solids).fail("no wall, solid or building, " + example);
+    }
+    if (walls) Place(place, "walls", *walls).fail("no wall, solid or building, " + example);
     place.fail("the key \"walls\" is missing, " + example);
   }
   read_buildings(scene, place, folder);

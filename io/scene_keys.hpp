@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
 #include "meshing/field.hpp"
 
@@ -33,7 +34,10 @@ inline constexpr SceneKey kSceneKeys[] = {
     {"sunder", "integer", "required", "", "Version of the scene format: 1.", kSceneVersion},
     {"seed", "integer", "1", "",
      "Chooses the random numbers; the same seed gives the same bytes. 64 bits."},
-    {"walls", "list of walls", "required unless there is a building", "", "The walls, see below."},
+    {"walls", "list of walls", "required unless there are solids or a building", "",
+     "The walls, see below."},
+    {"solids", "list of solids", "[]", "",
+     "Models that are fractured as a whole, see below; only `sunder fracture` uses them."},
     {"materials", "list of materials", "[]", "",
      "Materials of the scene's own. One with the name of a built-in material replaces the values "
      "it gives."},
@@ -56,6 +60,26 @@ inline constexpr SceneKey kWallKeys[] = {
      kShapePlace},
     {"rotation_deg", "[x, y, z]", "[0, 0, 0]", "degrees",
      "Turns about the world's x, then y, then z axis through the wall's origin.", kTurn},
+};
+
+inline constexpr SceneKey kSolidKeys[] = {
+    {"pattern", "solid pattern", "{\"type\": \"voronoi\"}", "", "How the solid breaks into cells."},
+    {"craters", "list of craters", "[]", "",
+     "What is taken away before the solid is fractured, see below."},
+    {"position", "[x, y, z]", "[0, 0, 0]", "m", "Where the model's origin is in the world.",
+     kShapePlace},
+    {"rotation_deg", "[x, y, z]", "[0, 0, 0]", "degrees",
+     "Turns about the world's x, then y, then z axis through the model's origin.", kTurn},
+};
+
+inline constexpr SceneKey kCraterKeys[] = {
+    {"centre", "[x, y, z]", "required", "m", "In the model's frame, after `scale`.", kShapePlace},
+    {"into",
+     "[x, y, z]",
+     "into the nearest face",
+     "",
+     "Direction of the depth; any length but 0.",
+     kShapePlace},
 };
 
 /// Of the field `material`, whose default is not that of a wall with an asset.
@@ -87,6 +111,15 @@ inline constexpr std::string_view kPatternEffects[] = {
     "elsewhere.",
 };
 static_assert(std::size(kPatternEffects) == std::size(kPatternTypes));
+
+/// The same of kSolidPatternTypes.
+inline constexpr std::string_view kSolidPatternEffects[] = {
+    "Voronoi cells of sites in space: uniform in the solid, denser around points, or given.",
+    "Slices across each axis.",
+    "Rays and rings about an axis, as glass breaks.",
+    "Courses of bricks along y.",
+};
+static_assert(std::size(kSolidPatternEffects) == std::size(kSolidPatternTypes));
 
 /// Letters that names may have: they end up in files that other programs read. At most 40, so that
 /// "<name>_chunk_000000" stays below 57.

@@ -91,8 +91,11 @@ Json field_schema(const FieldRow& row) {
       Json schema = list_schema(text_schema(row.choices));
       schema["uniqueItems"] = true;
       return schema;
+    } else if constexpr (std::is_same_v<T, Vec3>) {
+      return tuple_schema(3, row.range);
     } else {
-      return list_schema(tuple_schema(2, row.range), row.required ? 1 : 0);
+      const std::size_t size = std::is_same_v<T, std::vector<Vec2>> ? 2 : 3;
+      return list_schema(tuple_schema(size, row.range), row.required ? 1 : 0);
     }
   };
   Json schema = std::visit(make, row.default_value);
@@ -104,6 +107,8 @@ Json field_schema(const FieldRow& row) {
     if (row.has_default()) schema["default"] = *text;
   } else if (const auto* truth = std::get_if<bool>(&row.default_value)) {
     schema["default"] = *truth;
+  } else if (const auto* triple = std::get_if<Vec3>(&row.default_value)) {
+    schema["default"] = {json_number(triple->x), json_number(triple->y), json_number(triple->z)};
   }
   schema["description"] = description_of(row.effect, row.unit);
   return schema;
@@ -137,16 +142,51 @@ Json shape_schema() {
                                  object_schema(std::move(polygon), {"polygon"})})}};
 }
 
-Json pattern_schema() {
+Json patterns_schema(std::span<const std::vector<FieldRow>> patterns,
+                     std::span<const std::string_view> types,
+                     std::span<const std::string_view> effects) {
   Json alternatives = Json::array();
-  const auto patterns = pattern_rows();
   for (std::size_t i = 0; i < patterns.size(); ++i) {
-    Json properties{{"type", {{"const", std::string(kPatternTypes[i])}}}};
+    Json properties{{"type", {{"const", std::string(types[i])}}}};
     Json schema = fields_schema(patterns[i], std::move(properties), {"type"});
-    schema["description"] = std::string(kPatternEffects[i]);
+    schema["description"] = std::string(effects[i]);
     alternatives.push_back(std::move(schema));
   }
   return {{"type", "object"}, {"oneOf", std::move(alternatives)}};
+}
+
+Json pattern_schema() {
+  return patterns_schema(pattern_rows<PatternParams>(), kPatternTypes, kPatternEffects);
+}
+
+Json solid_pattern_schema() {
+  Json schema =
+      patterns_schema(pattern_rows<SolidPatternParams>(), kSolidPatternTypes, kSolidPatternEffects);
+  for (Json& each : schema["oneOf"]) {
+    if (each["properties"].contains("slices")) {
+      each["properties"]["slices"]["items"]["type"] = "integer";
+    }
+  }
+  return schema;
+}
+
+Json crater_schema() {
+  const auto& [centre, into] = kCraterKeys;
+  Json schema = fields_schema(field_rows<CarveParams>(), Json::object(), {"centre"});
+  add_key(schema["properties"], centre, tuple_schema(3, centre.range));
+  add_key(schema["properties"], into, tuple_schema(3, into.range));
+  return schema;
+}
+
+Json solid_schema() {
+  const std::array<Json, std::size(kSolidKeys)> schemas{
+      reference("solid_pattern"), list_schema(reference("crater")), tuple_schema(3, kShapePlace),
+      tuple_schema(3, kTurn)};
+  Json schema = fields_schema(field_rows<SolidModel>());
+  for (std::size_t i = 0; i < std::size(kSolidKeys); ++i) {
+    add_key(schema["properties"], kSolidKeys[i], schemas[i]);
+  }
+  return schema;
 }
 
 Json wall_schema() {
@@ -336,6 +376,7 @@ Json scene_schema() {
                                                         version,
                                                         seed,
                                                         list_schema(reference("wall")),
+                                                        list_schema(reference("solid")),
                                                         list_schema(reference("material")),
                                                         list_schema(reference("projectile")),
                                                         reference("building"),
@@ -344,12 +385,16 @@ Json scene_schema() {
   Json properties = Json::object();
   add_keys(properties, kSceneKeys, schemas);
   Json schema = object_schema(std::move(properties), {"sunder"});
-  schema["anyOf"] = Json::array({Json{{"required", {"walls"}}}, Json{{"required", {"building"}}}});
+  schema["anyOf"] = Json::array({Json{{"required", {"walls"}}}, Json{{"required", {"solids"}}},
+                                 Json{{"required", {"building"}}}});
   schema["if"] = {{"required", {"scenario"}}};
   schema["then"] = {{"required", {"building"}}};
   schema["definitions"] = {{"wall", wall_schema()},
                            {"shape", shape_schema()},
                            {"pattern", pattern_schema()},
+                           {"solid", solid_schema()},
+                           {"solid_pattern", solid_pattern_schema()},
+                           {"crater", crater_schema()},
                            {"material", fields_schema(field_rows<Material>())},
                            {"projectile", projectile_schema()},
                            {"building", building_schema()},

@@ -10,6 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "io/solid_picture.hpp"
+#include "io/text_writer.hpp"
+#include "io/tint.hpp"
 #include "io/wall_view.hpp"
 #include "meshing/random.hpp"
 
@@ -30,19 +33,6 @@ Colour mixed(Colour a, Colour b, double t) {
 
 Colour colour_of(const std::array<std::uint8_t, 3>& rgb) {
   return {static_cast<double>(rgb[0]), static_cast<double>(rgb[1]), static_cast<double>(rgb[2])};
-}
-
-// A little of a hue and a little light of the cell's own, so that neighbours can be told apart and
-// the wall still looks like its material.
-Colour tinted(Colour base, std::uint32_t cell) {
-  constexpr Colour kHues[] = {{206, 160, 120}, {120, 150, 178}, {150, 172, 138},
-                              {196, 184, 140}, {160, 144, 170}, {200, 150, 150}};
-  const std::uint64_t bits = random_bits(0x5375'6E64'6572, cell);
-  const Colour hue = kHues[bits % std::size(kHues)];
-  const double light = static_cast<double>((bits >> 8) % 256) / 255 - 0.5;
-  const Colour soft = mixed(base, hue, 0.30);
-  return mixed(soft, light > 0 ? Colour{255, 255, 255} : Colour{40, 40, 48},
-               std::abs(light) * 0.36);
 }
 
 // Text of the picture; coordinates in tenths of a millimetre are finer than a printer's.
@@ -309,7 +299,37 @@ Column column_of(const WallAsset& wall, bool exploded) {
   return column;
 }
 
-void draw_name(const WallAsset& wall, Vec2 at, double size, Paper& paper) {
+// A solid's column has its two pictures, each in the middle.
+Column column_of(const SolidPicture& picture) {
+  Column column;
+  const double scale = kMillimetres * picture.unit;
+  const Vec2 whole = scale * picture.whole_size, exploded = scale * picture.exploded_size;
+  column.margin = 0.07 * std::max({whole.x, whole.y, 1e-9});
+  column.width = std::max(whole.x, exploded.x) + 2 * column.margin;
+  column.flat_height = whole.y + 2 * column.margin;
+  if (!picture.exploded.empty()) column.oblique_height = exploded.y + column.margin;
+  return column;
+}
+
+void draw_solid(const SolidPicture& picture, const Column& column, double left, double flat_floor,
+                double oblique_floor, Paper& paper) {
+  const double scale = kMillimetres * picture.unit;
+  const auto draw = [&](const std::string& text, double width, double floor) {
+    if (text.empty()) return;
+    paper.text("<g transform=\"translate(");
+    paper.point({left + 0.5 * (column.width - scale * width), floor});
+    paper.text(") scale(");
+    char number[kNumberRoom];
+    paper.text({number, static_cast<std::size_t>(put_number(number, scale) - number)});
+    paper.text(")\">\n");
+    paper.text(text);
+    paper.text("</g>\n");
+  };
+  draw(picture.whole, picture.whole_size.x, flat_floor);
+  draw(picture.exploded, picture.exploded_size.x, oblique_floor);
+}
+
+void draw_name(const std::string& name, Vec2 at, double size, Paper& paper) {
   paper.text(
       "<text text-anchor=\"middle\" font-family=\"Helvetica, Arial, sans-serif\" "
       "fill=\"#4a4947\"");
@@ -317,7 +337,7 @@ void draw_name(const WallAsset& wall, Vec2 at, double size, Paper& paper) {
   paper.attribute("y", at.y);
   paper.attribute("font-size", size);
   paper.text(">");
-  for (const char c : wall.wall.name) {
+  for (const char c : name) {
     paper.text(c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string_view(&c, 1));
   }
   paper.text("</text>\n");
@@ -347,13 +367,32 @@ void draw_wall(const WallAsset& wall, const Column& column, double left, double 
 
 }  // namespace
 
-std::string draw_svg(const Asset& asset) {
+std::array<double, 3> tinted(const std::array<double, 3>& base, std::uint32_t cell) {
+  constexpr Colour kHues[] = {{206, 160, 120}, {120, 150, 178}, {150, 172, 138},
+                              {196, 184, 140}, {160, 144, 170}, {200, 150, 150}};
+  const std::uint64_t bits = random_bits(0x5375'6E64'6572, cell);
+  const Colour hue = kHues[bits % std::size(kHues)];
+  const double light = static_cast<double>((bits >> 8) % 256) / 255 - 0.5;
+  const Colour soft = mixed(base, hue, 0.30);
+  return mixed(soft, light > 0 ? Colour{255, 255, 255} : Colour{40, 40, 48},
+               std::abs(light) * 0.36);
+}
+
+std::string draw_svg(const Asset& asset, std::span<const SolidAsset> solids) {
   std::uint64_t cells = 0;
   for (const WallAsset& wall : asset.walls) cells += wall.pattern.cell_count();
   std::vector<Column> columns;
   double width = 0, flat = 0, oblique = 0;
   for (const WallAsset& wall : asset.walls) {
     columns.push_back(column_of(wall, cells <= kMostExploded));
+    width += columns.back().width;
+    flat = std::max(flat, columns.back().flat_height);
+    oblique = std::max(oblique, columns.back().oblique_height);
+  }
+  std::vector<SolidPicture> pictures;
+  for (const SolidAsset& solid : solids) {
+    pictures.push_back(draw_solid(solid));
+    columns.push_back(column_of(pictures.back()));
     width += columns.back().width;
     flat = std::max(flat, columns.back().flat_height);
     oblique = std::max(oblique, columns.back().oblique_height);
@@ -370,8 +409,16 @@ std::string draw_svg(const Asset& asset) {
   double left = 0;
   for (std::size_t w = 0; w < columns.size(); ++w) {
     const Column& column = columns[w];
-    draw_wall(asset.walls[w], column, left, flat - margin, flat + oblique - 0.3 * margin, paper);
-    draw_name(asset.walls[w], {left + 0.5 * column.width, height - letters}, letters, paper);
+    const bool is_wall = w < asset.walls.size();
+    const std::size_t solid = w - asset.walls.size();
+    const double oblique_floor = flat + oblique - 0.3 * margin;
+    if (is_wall) {
+      draw_wall(asset.walls[w], column, left, flat - margin, oblique_floor, paper);
+    } else {
+      draw_solid(pictures[solid], column, left, flat - margin, oblique_floor, paper);
+    }
+    draw_name(is_wall ? asset.walls[w].wall.name : solids[solid].solid.name,
+              {left + 0.5 * column.width, height - letters}, letters, paper);
     left += column.width;
   }
   paper.text("</svg>\n");

@@ -85,17 +85,21 @@ void check_names(std::span<const WallView> walls) {
 }
 
 void check_sizes(const WallView& wall) {
-  const std::size_t count = wall.outer.size();
-  if (wall.inner.size() != count || wall.chunks.size() != count ||
-      wall.vertex_begin.size() != count + 1) {
+  const std::size_t count = wall.chunk_count();
+  if (wall.chunks.size() != count || wall.vertex_begin.size() != count + 1) {
     refuse(wall.name, "the tables of its chunks differ in length");
+  }
+  if (wall.part_begin[0] != 0 || !std::ranges::is_sorted(wall.part_begin) ||
+      wall.part_begin.back() != wall.parts.size()) {
+    refuse(wall.name, "the parts of its chunks are not in order");
   }
   if (wall.vertex_begin[0] != 0 || !std::ranges::is_sorted(wall.vertex_begin)) {
     refuse(wall.name, "the vertex ranges of its chunks are not in order");
   }
   const std::size_t vertices = wall.vertex_begin.back();
   if (wall.positions.size() != 3 * vertices || wall.normals.size() != 3 * vertices ||
-      wall.uvs.size() != 2 * vertices) {
+      wall.uvs.size() != 2 * vertices ||
+      (!wall.colours.empty() && wall.colours.size() != 4 * vertices)) {
     refuse(wall.name, "its vertex arrays differ in length");
   }
 }
@@ -114,9 +118,9 @@ void check_indices(const WallView& wall) {
     }
   }
   for (std::uint32_t chunk = 0; chunk < wall.chunk_count(); ++chunk) {
-    for (const std::uint32_t list : {wall.outer[chunk], wall.inner[chunk]}) {
-      if (list == RenderMeshes::kNoList) continue;
-      if (list >= wall.lists.size() || needed[list] > wall.vertex_count(chunk)) {
+    for (const auto [material, list] : wall.parts_of(chunk)) {
+      if (list >= wall.lists.size() || material >= wall.materials.size() ||
+          needed[list] > wall.vertex_count(chunk)) {
         refuse(wall.name, "chunk " + std::to_string(chunk) + " has an index out of range");
       }
     }
@@ -129,6 +133,7 @@ void check_numbers(const WallView& wall) {
     refuse(wall.name, "a normal is not of length 1");
   }
   if (!all_finite(wall.uvs)) refuse(wall.name, "a texture coordinate is not finite");
+  if (!all_finite(wall.colours)) refuse(wall.name, "a colour is not finite");
   const Quaternion q = wall.rotation;
   const double turn = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
   if (!is_finite(wall.position) || !(std::abs(turn - 1) < 1e-6) || !std::isfinite(wall.thickness) ||
@@ -153,6 +158,14 @@ void check_numbers(const WallView& wall) {
   }
 }
 
+ViewMaterial material_of(std::string name, const std::array<std::uint8_t, 3>& rgb, double metallic,
+                         double roughness) {
+  return {.name = std::move(name),
+          .colour = {linear(rgb[0]), linear(rgb[1]), linear(rgb[2])},
+          .metallic = metallic,
+          .roughness = roughness};
+}
+
 std::uint64_t hash_of(std::span<const std::uint32_t> values) {
   std::uint64_t hash = values.size();
   for (const std::uint32_t value : values) hash = mix_bits(hash ^ value);
@@ -161,25 +174,48 @@ std::uint64_t hash_of(std::span<const std::uint32_t> values) {
 
 }  // namespace
 
+ViewMaterial outer_material(const std::string& material) {
+  const MaterialLook look = look_of(material);
+  return material_of(material + "_outer", look.outer, look.metallic, look.outer_roughness);
+}
+
+ViewMaterial inner_material(const std::string& material) {
+  const MaterialLook look = look_of(material);
+  return material_of(material + "_inner", look.inner, look.metallic, look.inner_roughness);
+}
+
+void show_meshes(const RenderMeshes& meshes, WallView& view) {
+  view.positions = meshes.positions;
+  view.normals = meshes.normals;
+  view.uvs = meshes.uvs;
+  view.vertex_begin = meshes.vertex_begin;
+  view.indices = meshes.indices;
+  view.lists.assign(meshes.lists.begin(), meshes.lists.end());
+  view.materials = {outer_material(view.material), inner_material(view.material)};
+  view.parts.clear();
+  view.parts.reserve(2 * meshes.outer.size());
+  view.part_begin.assign(1, 0);
+  view.part_begin.reserve(meshes.outer.size() + 1);
+  for (std::size_t c = 0; c < meshes.outer.size(); ++c) {
+    if (meshes.outer[c] != RenderMeshes::kNoList) view.parts.push_back({0, meshes.outer[c]});
+    if (meshes.inner[c] != RenderMeshes::kNoList) view.parts.push_back({1, meshes.inner[c]});
+    view.part_begin.push_back(static_cast<std::uint32_t>(view.parts.size()));
+  }
+}
+
 WallView view_of(const WallAsset& wall, const RenderMeshes& meshes) {
-  return {.name = wall.wall.name,
-          .first_chunk = wall.chunk_name(0),
-          .material = wall.wall.material,
-          .position = wall.wall.position,
-          .rotation = wall.wall.rotation,
-          .thickness = wall.wall.thickness,
-          .density = wall.density,
-          .volume_expected = wall.volume_expected,
-          .positions = meshes.positions,
-          .normals = meshes.normals,
-          .uvs = meshes.uvs,
-          .vertex_begin = meshes.vertex_begin,
-          .indices = meshes.indices,
-          .lists = meshes.lists,
-          .outer = meshes.outer,
-          .inner = meshes.inner,
-          .chunks = wall.chunks,
-          .bonds = wall.bonds};
+  WallView view{.name = wall.wall.name,
+                .first_chunk = wall.chunk_name(0),
+                .material = wall.wall.material,
+                .position = wall.wall.position,
+                .rotation = wall.wall.rotation,
+                .thickness = wall.wall.thickness,
+                .density = wall.density,
+                .volume_expected = wall.volume_expected,
+                .chunks = wall.chunks,
+                .bonds = wall.bonds};
+  show_meshes(meshes, view);
+  return view;
 }
 
 bool is_portable(std::string_view name) {
@@ -196,7 +232,7 @@ void validate(std::span<const WallView> walls) {
     check_indices(wall);
     check_numbers(wall);
   }
-  if (std::ranges::all_of(walls, [](const WallView& wall) { return wall.outer.empty(); })) {
+  if (std::ranges::all_of(walls, [](const WallView& wall) { return wall.chunk_count() == 0; })) {
     throw Error(ErrorCode::output, "there are no chunks to write");
   }
 }
@@ -230,13 +266,11 @@ UniqueLists unique_lists(std::span<const WallView> walls) {
   };
   for (const WallView& wall : walls) {
     std::vector<std::uint32_t>& ids = result.of_wall.emplace_back(wall.lists.size(), kUnseen);
-    for (std::uint32_t chunk = 0; chunk < wall.chunk_count(); ++chunk) {
-      for (const std::uint32_t list : {wall.outer[chunk], wall.inner[chunk]}) {
-        if (list == RenderMeshes::kNoList || ids[list] != kUnseen) continue;
-        const IndexList range = wall.lists[list];
-        if (range.count == 0) continue;
-        ids[list] = find_or_add(wall.indices.subspan(range.begin, range.count));
-      }
+    for (const ViewPart& part : wall.parts) {
+      if (ids[part.list] != kUnseen) continue;
+      const IndexList range = wall.lists[part.list];
+      if (range.count == 0) continue;
+      ids[part.list] = find_or_add(wall.indices.subspan(range.begin, range.count));
     }
   }
   return result;
@@ -270,11 +304,22 @@ MaterialLook look_of(std::string_view material) {
   return look;
 }
 
-// A cubic that follows the sRGB curve to 0.002; pow would differ between machines.
 double linear(std::uint8_t channel) {
-  const double c = channel / 255.0;
-  const double value = c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878);
-  return std::floor(value * 1e4 + 0.5) / 1e4;
+  return std::floor(linear_channel(channel / 255.0) * 1e4 + 0.5) / 1e4;
+}
+
+// A cubic that follows the sRGB curve to 0.002; pow would differ between machines.
+double linear_channel(double srgb) {
+  return srgb * (srgb * (srgb * 0.305306011 + 0.682171111) + 0.012522878);
+}
+
+double srgb_channel(double linear) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 24; ++i) {
+    const double middle = 0.5 * (low + high);
+    (linear_channel(middle) < linear ? low : high) = middle;
+  }
+  return high;
 }
 
 }  // namespace sunder

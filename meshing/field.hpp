@@ -27,7 +27,8 @@ template <class Params>
 struct Field {
   using Member =
       std::variant<double Params::*, std::int64_t Params::*, bool Params::*, std::string Params::*,
-                   std::vector<std::string> Params::*, std::vector<Vec2> Params::*>;
+                   std::vector<std::string> Params::*, std::vector<Vec2> Params::*, Vec3 Params::*,
+                   std::vector<Vec3> Params::*>;
   std::string_view name;
   Member member;
   std::string_view unit;

@@ -12,7 +12,7 @@ namespace sunder {
 
 /// How a face looks, as its file says (glTF's metallic-roughness model; linear colour).
 struct SurfaceMaterial {
-  std::string name = "outer";
+  std::string name;  ///< empty: the file gives none, and it looks as what the solid consists of
   std::array<float, 4> base_colour{0.8f, 0.8f, 0.8f, 1};
   float metallic = 0, roughness = 0.9f;
   std::string texture;  ///< path of the base colour's image relative to the model; empty: none

@@ -23,6 +23,92 @@ expect_files() {  # the files there are, besides out and err
 }
 wall="--wall 6x3x0.2 --cell 0.3 --opening 0.9x2.1@1,0"
 
+# A cube of 1 m as OBJ; an argument leaves that many of its faces out.
+put_cube() {  # file [faces left out]
+  {
+    printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '0 0 1' '1 0 1' '1 1 1' '0 1 1'
+    printf 'f %s\n' '1 4 3 2' '5 6 7 8' '1 2 6 5' '4 8 7 3' '1 5 8 4' '2 3 7 6' |
+      tail -n +$((1 + ${2:-0}))
+  } > "$1"
+}
+
+solids() {
+  put_cube cube.obj
+  local n pattern
+  for pattern in "--chunks 30" "--chunks 20 --near 0,0,0 --near 1,1,1 --radius 0.4 --share 0.8" \
+    "--sites 0.2,0.2,0.2;0.8,0.8,0.8 --sites 0.5,0.5,0.9" \
+    "--pattern slices --slices 2x1x3 --offset-variation 0.3 --angle-variation-deg 5" \
+    "--pattern radial --centre 0.5,0.5,0.5 --axis 0,0,1 --rays 7 --rings 2 --radius 0.4" \
+    "--pattern brick --brick 0.5x0.25x0.5 --offset 0.5 --mortar 0.02"; do
+    # shellcheck disable=SC2086
+    expect_exit 0 "$sunder" fracture cube.obj $pattern --material brick --name crate -o a.glb \
+      -o a.obj -o a.stl --report a.json
+    expect_text a.json '"sound": true'
+    for n in a.glb a.obj a.stl; do expect_exit 0 "$sunder" check $n; done
+  done
+  for n in 1 2 5; do
+    expect_exit 0 "$sunder" fracture cube.obj --chunks 40 --threads $n -o $n.glb -o $n.svg
+  done
+  for n in 2 5; do
+    cmp 1.glb $n.glb && cmp 1.svg $n.svg || fail "$n threads change the bytes"
+  done
+  cat > s.json << END
+{"sunder": 1, "walls": [{"outline": {"rect": [2, 1]}}],
+ "solids": [{"file": "cube.obj", "scale": 0.5, "position": [0, 0, 2], "pattern":
+   {"type": "voronoi", "chunks": 9}}]}
+END
+  expect_exit 0 "$sunder" fracture s.json -o s.glb --report s.json.json
+  expect_exit 0 "$sunder" check s.glb
+  expect_exit 0 "$sunder" fracture s.json --set solids.0.pattern.chunks=2 -o t.glb
+  expect_exit 2 "$sunder" fracture s.json -o cube.obj
+  expect_text err "would overwrite the input"
+}
+
+solid_errors() {
+  put_cube cube.obj
+  put_cube open.obj 1
+  expect_exit 3 "$sunder" fracture open.obj -o a.glb
+  expect_text err "open.obj: is not a solid: 4 open edges, first near ("
+  expect_text err "--repair"
+  expect_exit 0 "$sunder" fracture open.obj --repair --chunks 9 -o a.glb --report a.json
+  expect_text err "solid: repair: "
+  expect_text a.json '"volume_before"'
+  expect_exit 0 "$sunder" check a.glb
+  expect_exit 2 "$sunder" fracture cube.obj --chunks 0 -o a.glb
+  expect_text err "--chunks: 0 is outside"
+  expect_exit 2 "$sunder" fracture cube.obj --pattern slices --slices 1x2 -o a.glb
+  expect_text err "--slices 1x2: expected X,Y,Z or XxYxZ"
+  expect_exit 2 "$sunder" fracture cube.obj --cell 0.3 -o a.glb
+  expect_text err '--cell: unknown key "cell"'
+  expect_exit 2 "$sunder" fracture cube.obj --patern slices -o a.glb
+  expect_text err 'did you mean "--pattern"'
+  expect_exit 2 "$sunder" fracture cube.obj --near 1,2 -o a.glb
+  expect_text err "--near 1,2: expected X,Y,Z in metres"
+  expect_exit 2 "$sunder" fracture cube.obj --carve 1,2 -o a.glb
+  expect_text err "--carve 1,2: expected X,Y,Z:RADIUS"
+  expect_exit 2 "$sunder" fracture cube.obj --carve 1,2,3:-1 -o a.glb
+  expect_text err "--carve: -1 is outside"
+  expect_exit 2 "$sunder" fracture cube.obj --scale 0 -o a.glb
+  expect_text err "--scale: 0 is outside"
+  expect_exit 2 "$sunder" fracture cube.obj --anchors left -o a.glb
+  expect_text err "--anchors goes with --wall"
+  expect_exit 2 "$sunder" fracture --wall 1x1x0.1 --repair -o a.glb
+  expect_text err "--repair goes with a model"
+  expect_exit 2 "$sunder" fracture cube.obj --wall 1x1x0.1 -o a.glb
+  expect_exit 2 "$sunder" fracture cube.obj -o ./cube.obj
+  expect_text err "would overwrite the input"
+  expect_exit 2 "$sunder" fracture missing.obj -o a.glb
+  expect_text err 'MODEL: the model "missing.obj" does not exist'
+  echo '{"sunder": 1, "solids": [{"file": "../cube.obj"}]}' > s.json
+  mkdir sub && mv s.json sub/
+  expect_exit 3 "$sunder" fracture sub/s.json -o a.glb
+  expect_text err "is not in the scene's folder"
+  expect_exit 0 "$sunder" fracture sub/s.json --allow-outside -o b.glb
+  head -c 200 cube.obj | tr 'v' '\377' > bad.obj
+  expect_exit 3 "$sunder" fracture bad.obj -o c.glb
+  [ ! -e c.glb ] || fail "a model that cannot be read left a file"
+}
+
 version() {
   expect_exit 0 "$sunder" --version
   expect_text out "sunder "
@@ -183,7 +269,7 @@ reports_agree() {
   expect_text p.json '"chunks"'
 }
 scenes_are_sound() {
-  for scene in "$source"/data/scenes/*.json; do
+  for scene in "$source"/data/scenes/*.json "$source"/data/models/*.json; do
     grep -q '"building"' "$scene" && continue
     expect_exit 0 "$sunder" fracture "$scene" -o s.glb -o s.obj --report s.json
     expect_text s.json '"sound": true'

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/export.hpp"
+#include "io/imported_asset.hpp"
 #include "io/reader_process.hpp"
 #include "io/sample_asset.hpp"
 #include "meshing/error.hpp"
@@ -205,12 +206,13 @@ TEST(Import, LimitsHold) {
 TEST(Import, AReaderThatNeverEndsIsStopped) {
   const auto begin = std::chrono::steady_clock::now();
   try {
-    run_reader("loop.ply", {.seconds = 0.1}, []() -> ImportedAsset {
+    const ChildWork read = [] {
       volatile bool done = false;
       while (!done) {
       }
-      return {};
-    });
+      return [](AnswerWriter&) {};
+    };
+    run_reader("loop.ply", {.seconds = 0.1}, read, [](AnswerReader&) {});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::input);
@@ -221,10 +223,11 @@ TEST(Import, AReaderThatNeverEndsIsStopped) {
 
 TEST(Import, AReaderThatTakesAllMemoryIsStopped) {
   try {
-    run_reader("big.ply", {.memory = std::uint64_t{64} << 20}, []() -> ImportedAsset {
+    const ChildWork read = []() -> std::function<void(AnswerWriter&)> {
       ImportedAsset asset;
       while (true) asset.walls.emplace_back().name.assign(1 << 20, 'x');
-    });
+    };
+    run_reader("big.ply", {.memory = std::uint64_t{64} << 20}, read, [](AnswerReader&) {});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::input);
@@ -238,11 +241,13 @@ TEST(Import, AReaderThatTakesAllMemoryIsStopped) {
 // What a hijacked reader might send: the parent must not trust a single number of it.
 TEST(Import, ADamagedAnswerIsAnError) {
   try {
-    run_reader("odd.glb", {}, []() -> ImportedAsset {
+    const ChildWork read = [] {
       ImportedAsset asset;
-      asset.walls.push_back({"w", "", {{"c", {0, 0, 0}, {0, 1, 2}, {0}}}, 0, 0});
-      return asset;  // indices 1 and 2 do not exist
-    });
+      asset.walls.emplace_back().chunks.push_back({"c", {0, 0, 0}, {0, 1, 2}, {0}});
+      // Indices 1 and 2 do not exist.
+      return [asset](AnswerWriter& out) { send_asset(asset, out); };
+    };
+    run_reader("odd.glb", {}, read, [](AnswerReader& in) { receive_asset(in); });
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()), "odd.glb: the reader's answer is damaged");

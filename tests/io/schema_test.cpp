@@ -64,7 +64,9 @@ bool is_beyond_schema(const std::string& message) {
                            "exists already",
                            "unknown material",
                            "the asset ",
-                           "no wall and no building",
+                           "no wall, solid or building",
+                           "the model ",
+                           "is a direction",
                            "\"density\" is missing",
                            "\" occurs twice, names must differ",
                            "may be named",
@@ -264,7 +266,15 @@ TEST(SceneSchema, HasEveryKeyOfEveryTable) {
   for (const char* key : {"position", "velocity"}) projectile.emplace_back(key);
   EXPECT_EQ(property_keys(definitions["projectile"]), projectile);
   EXPECT_EQ(property_keys(definitions["simulation"]), table_keys<SimulationParams>());
-  EXPECT_EQ(property_keys(schema).size(), 9u);
+  std::vector<std::string> solid = table_keys<SolidModel>();
+  for (const char* key : {"pattern", "craters", "position", "rotation_deg"})
+    solid.emplace_back(key);
+  EXPECT_EQ(property_keys(definitions["solid"]), solid);
+  std::vector<std::string> crater = table_keys<CarveParams>();
+  for (const char* key : {"centre", "into"}) crater.emplace_back(key);
+  EXPECT_EQ(property_keys(definitions["crater"]), crater);
+  EXPECT_EQ(definitions["solid_pattern"]["oneOf"].size(), std::size(kSolidPatternTypes));
+  EXPECT_EQ(property_keys(schema).size(), 10u);
 }
 
 TEST(SceneSchema, HasEveryKeyOfABuilding) {
