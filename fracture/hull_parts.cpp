@@ -192,32 +192,50 @@ void add_junctions(const HullChunk& chunk, HullPart& part) {
 }
 
 double distance_bound(const ConvexHull& hull, const HullChunk& chunk, double limit) {
-  using Corners = std::array<Vec3, 3>;
-  std::vector<Corners> open;
-  for (const auto& t : hull.triangles)
-    open.push_back(
-        {place(hull.vertices[t[0]]), place(hull.vertices[t[1]]), place(hull.vertices[t[2]])});
-  double bound = 0, found = 0;
-  for (int samples = 0; !open.empty(); ++samples) {
-    const auto [a, b, c] = open.back();
-    open.pop_back();
+  struct Sample {
+    std::array<Vec3, 3> corners;
+    double bound = 0;
+  };
+  const auto is_below = [](const Sample& a, const Sample& b) { return a.bound < b.bound; };
+  std::vector<Sample> open;  // a heap
+  double found = 0;
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 middle = (1.0 / 3) * (a + b + c);
     const double reach = std::max({length(a - middle), length(b - middle), length(c - middle)});
-    const double enough = std::max(0.9 * limit, 1.1 * found);
-    double distance = chunk.tree.nearest(middle).distance;
-    if (distance + reach > enough) {
-      if (chunk.contains(middle)) distance = -distance;  // as is all that is less far from it
-      found = std::max(found, distance);
+    const auto nearest = chunk.tree.nearest(middle);
+    double bound = nearest.distance + reach;
+    if (bound > limit / 8) {
+      // The distance from one triangle is greatest at a corner.
+      for (const double near : {limit / 8, 0.9 * limit})
+        if (bound > near && chunk.tree.is_within(a, near, nearest.triangle) &&
+            chunk.tree.is_within(b, near, nearest.triangle) &&
+            chunk.tree.is_within(c, near, nearest.triangle))
+          bound = near;
     }
-    if (distance + reach <= enough || samples >= kMostSamplesPerHull) {
-      bound = std::max(bound, distance + reach);
-      continue;
+    if (bound > std::max(0.9 * limit, 1.1 * found)) {
+      // As deep inside as it is near the surface, so is all around it.
+      if (chunk.contains(middle))
+        bound = std::max(0.0, reach - nearest.distance);
+      else
+        found = std::max(found, nearest.distance);
     }
+    open.push_back({{a, b, c}, bound});
+    std::ranges::push_heap(open, is_below);
+  };
+  for (const auto& t : hull.triangles)
+    add(place(hull.vertices[t[0]]), place(hull.vertices[t[1]]), place(hull.vertices[t[2]]));
+  for (int samples = 0; samples < kMostSamplesPerHull; samples += 4) {
+    if (open.front().bound <= std::max(0.9 * limit, 1.1 * found)) break;
+    std::ranges::pop_heap(open, is_below);
+    const auto [a, b, c] = open.back().corners;
+    open.pop_back();
     const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-    open.insert(open.end(),
-                {Corners{a, ab, ca}, Corners{b, bc, ab}, Corners{c, ca, bc}, Corners{ab, bc, ca}});
+    add(a, ab, ca);
+    add(b, bc, ab);
+    add(c, ca, bc);
+    add(ab, bc, ca);
   }
-  return bound;
+  return open.front().bound;
 }
 
 }  // namespace sunder
