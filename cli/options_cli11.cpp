@@ -11,6 +11,7 @@
 #include "cli/solid_scene.hpp"
 #include "cli/usage.hpp"
 #include "cli/wall_scene.hpp"
+#include "fracture/hulls.hpp"
 #include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
 #include "io/export_files.hpp"
@@ -23,6 +24,7 @@ namespace {
 constexpr const char* kWallGroup = "Wall";
 constexpr const char* kSolidGroup = "Model";
 constexpr const char* kPatternGroup = "Pattern";
+constexpr const char* kHullGroup = "Hulls";
 
 // CLI11 lets a list take every word up to the next option; here each word needs its own option.
 CLI::Option* one_value_each(CLI::Option* option) {
@@ -35,6 +37,8 @@ struct Given {
   SolidOptions solid;
   PatternOptions pattern;
   std::string name, material, seed, threads, at;
+  std::map<std::string, std::string> hulls;  // by key
+  bool physics = false;
 };
 
 template <class Params>
@@ -223,6 +227,36 @@ void add_pattern_options(CLI::App& verb, Given& given) {
                                               given.pattern, given.solid.forms, help);
 }
 
+// Keys of a scene's "hulls" as options.
+constexpr std::pair<const char*, const char*> kHullOptions[] = {{"nodes", "--hulls"},
+                                                                {"error", "--hull-error"},
+                                                                {"max_hulls", "--max-hulls"},
+                                                                {"max_vertices", "--hull-vertices"},
+                                                                {"physics", "--physics"}};
+
+void add_hull_options(CLI::App& verb, Given& given) {
+  for (const Field<HullParams>& field : fields<HullParams>()) {
+    const std::string key(field.name);
+    const auto option =
+        std::ranges::find(kHullOptions, key, &std::pair<const char*, const char*>::first);
+    if (std::holds_alternative<bool HullParams::*>(field.member)) {
+      verb.add_flag(option->second, given.physics, std::string(field.effect))
+          ->disable_flag_override()
+          ->group(kHullGroup);
+    } else {
+      verb.add_option(option->second, given.hulls[key], std::string(field.effect))
+          ->group(kHullGroup);
+    }
+  }
+}
+
+// They count as --set, of a scene file too.
+void set_hulls(Options& options, const Given& given) {
+  for (const auto& [key, value] : given.hulls)
+    if (!value.empty()) options.overrides.push_back("hulls." + key + "=" + value);
+  if (given.physics) options.overrides.emplace_back("hulls.physics=true");
+}
+
 CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb =
       *app.add_subcommand("fracture", "Pre-fracture the walls and solids of a scene, or a model");
@@ -231,6 +265,7 @@ CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
   add_wall_options(verb, given.wall);
   add_solid_options(verb, given.solid);
   add_pattern_options(verb, given);
+  add_hull_options(verb, given);
   return verb;
 }
 
@@ -309,6 +344,7 @@ void finish_fracture(const CLI::App& verb, Options& options, Given& given) {
   if (is_wall) options.made_scene = scene_text(given.wall, given.pattern);
   if (options.is_model)
     options.made_scene = scene_text(options.inputs.front().string(), given.solid, given.pattern);
+  set_hulls(options, given);
   check_something_to_write(options, "fracture");
 }
 

@@ -12,6 +12,7 @@
 #include "fracture/measure.hpp"
 #include "fracture/solid_prepare.hpp"
 #include "io/export.hpp"
+#include "io/export_files.hpp"
 #include "io/model.hpp"
 #include "io/report.hpp"
 #include "io/scene.hpp"
@@ -82,6 +83,11 @@ Fractured fracture(const Scene& scene, const Options& options, int threads) {
 
 bool needs_meshes(const std::filesystem::path& path) {
   return path.extension() != ".svg" && path.extension() != ".json";
+}
+
+bool holds_hulls(const std::filesystem::path& path) {
+  const std::string suffix = suffix_of(path);
+  return suffix == ".glb" || suffix == ".gltf" || suffix == ".obj";
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> skipped(const Fractured& fractured,
@@ -162,6 +168,25 @@ void print_summary(const Fractured& fractured, const Scene& scene, const Options
     std::fprintf(stderr, "%-8s %8.3f ms\n", step.c_str(), 1e3 * seconds);
 }
 
+void print_hulls(const MeshedAsset& asset) {
+  if (asset.hulls.empty()) return;
+  std::uint64_t hulls = 0, over = 0;
+  HullSet::Error worst;
+  for (const HullSet& set : asset.hulls) {
+    hulls += set.hull_count();
+    for (const HullSet::Error& error : set.errors) {
+      worst.volume = std::max(worst.volume, error.volume);
+      worst.distance = std::max(worst.distance, error.distance);
+      over += std::max(error.volume, error.distance) > asset.hull_params.error;
+    }
+  }
+  std::fprintf(stderr,
+               "%llu hulls, at most %.3g of a chunk's volume too much and %.3g of its size off; "
+               "%llu chunks above %g\n",
+               static_cast<unsigned long long>(hulls), worst.volume, worst.distance,
+               static_cast<unsigned long long>(over), asset.hull_params.error);
+}
+
 }  // namespace
 
 int run_fracture(const Options& options) {
@@ -176,9 +201,13 @@ int run_fracture(const Options& options) {
   const bool report_wanted =
       options.json || !options.report.empty() || std::ranges::any_of(options.outputs, wants_report);
   const bool meshed = report_wanted || std::ranges::any_of(options.outputs, needs_meshes);
-  const MeshedAsset meshes = meshed ? mesh_asset(fractured.walls, threads, fractured.solids)
-                                    : MeshedAsset{fractured.walls, {}, fractured.solids, {}};
+  MeshedAsset meshes = meshed ? mesh_asset(fractured.walls, threads, fractured.solids)
+                              : MeshedAsset{fractured.walls, {}, fractured.solids, {}};
   watch.lap("mesh");
+  if (scene.hulls.is_wanted() && std::ranges::any_of(options.outputs, holds_hulls)) {
+    add_hulls(meshes, scene.hulls, scene.materials, threads);
+    watch.lap("hulls");
+  }
   for (const auto& path : options.outputs)
     if (!wants_report(path)) export_asset(meshes, path);
   watch.lap("write");
@@ -201,6 +230,7 @@ int run_fracture(const Options& options) {
     }
   }
   if (!options.quiet) print_summary(fractured, scene, options, watch);
+  if (!options.quiet) print_hulls(meshes);
   return exit_code;
 }
 

@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 # The public headers: what a user includes, and what those include. The others may change any time.
 set(sunder_meshing_headers error field lattice model_surface parallel progress random raw_vector
                            region repair surface_defects tri_mesh triangulate trig vec)
-set(sunder_fracture_headers asset bonds breaking chunk_mesh cut local_web measure pattern quad_grid
+set(sunder_fracture_headers asset bonds breaking chunk_mesh cut local_web hulls measure pattern quad_grid
                             recover sites slivers solid_asset solid_model solid_prepare spiderweb
                             support_graph voronoi wall)
 set(sunder_sim_headers blow buckling collapse frame impact joint_strength material penetration pose

@@ -8,6 +8,7 @@
 #include "io/export_files.hpp"
 #include "io/gltf.hpp"
 #include "io/obj.hpp"
+#include "io/scene.hpp"
 #include "io/solid_view.hpp"
 #include "io/svg.hpp"
 #include "meshing/error.hpp"
@@ -75,6 +76,11 @@ std::vector<WallView> views_of(const MeshedAsset& asset, const std::filesystem::
   for (std::size_t i = 0; i < asset.solid_meshes.size(); ++i) {
     views.push_back(view_of(asset.solids[i], asset.solid_meshes[i], path));
   }
+  for (std::size_t i = 0; i < asset.hulls.size(); ++i) {
+    views[i].hulls = {&asset.hulls[i], hull_nodes(asset.hull_params.nodes),
+                      asset.hull_params.physics, asset.hull_materials[i].friction,
+                      asset.hull_materials[i].restitution};
+  }
   make_names_differ(views);
   return views;
 }
@@ -88,6 +94,20 @@ MeshedAsset mesh_asset(const Asset& asset, int threads, std::span<const SolidAss
     result.solid_meshes.push_back(solid_meshes(solid, threads));
   }
   return result;
+}
+
+void add_hulls(MeshedAsset& asset, const HullParams& params, const std::vector<Material>& materials,
+               int threads) {
+  asset.hull_params = params;
+  if (!params.is_wanted()) return;
+  for (const WallAsset& wall : asset.asset.walls) {
+    asset.hull_materials.push_back(find_material(materials, wall.wall.material));
+    asset.hulls.push_back(wall_hulls(wall, params, threads));
+  }
+  for (const SolidAsset& solid : asset.solids) {
+    asset.hull_materials.push_back(find_material(materials, solid.solid.material));
+    asset.hulls.push_back(solid_hulls(solid, params, threads));
+  }
 }
 
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path) {

@@ -8,7 +8,9 @@
 
 #include "fracture/asset.hpp"
 #include "fracture/chunk_mesh.hpp"
+#include "fracture/hulls.hpp"
 #include "fracture/solid_asset.hpp"
+#include "sim/material.hpp"
 
 namespace sunder {
 
@@ -22,16 +24,23 @@ struct MeshedAsset {
   std::vector<RenderMeshes> meshes;  ///< one per wall
   std::span<const SolidAsset> solids = {};
   std::vector<SolidMeshes> solid_meshes = {};
+  std::vector<HullSet> hulls = {};  ///< of the walls, then of the solids; empty: none
+  HullParams hull_params = {};
+  std::vector<Material> hull_materials = {};  ///< as the hulls; friction and restitution only
 };
 MeshedAsset mesh_asset(const Asset& asset, int threads = 1,
                        std::span<const SolidAsset> solids = {});
+/// Makes the hulls that the params want, for .glb, .gltf and .obj by export_asset. `materials` has
+/// those of all walls and solids. Throws Error{input} for a material that is not there.
+void add_hulls(MeshedAsset& asset, const HullParams& params, const std::vector<Material>& materials,
+               int threads = 1);
 
 /// Writes the asset in the format of the path's suffix; whole or not at all (a .gltf with its .bin,
 /// an .obj with its .mtl). GLB, glTF and OBJ are written straight from the meshes by the writers
-/// that are also registered with assimp (export_through_assimp), byte for byte the same; STL and PLY
-/// by assimp; SVG by ourselves. A solid's textures stand inside a .glb; a .gltf or .mtl refers to
-/// the files by their path from its folder. Throws Error{usage} for another suffix, Error{output} on failure.
-/// Same asset, same bytes.
+/// that are also registered with assimp (export_through_assimp), byte for byte the same; STL and
+/// PLY by assimp; SVG by ourselves. A solid's textures stand inside a .glb; a .gltf or .mtl refers
+/// to the files by their path from its folder. Throws Error{usage} for another suffix,
+/// Error{output} on failure. Same asset, same bytes.
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path);
 
 /// The same file by way of an aiScene and Assimp::Exporter, for every format but .svg; of solids,

@@ -165,6 +165,8 @@ void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout
   for (const GltfParts::Shape& shape : parts.shapes) pass(shape.mesh.positions);
   for (std::uint32_t v = 0; v < parts.still_count; ++v) out.put(Vec3{});
   out.flush();
+  for (const WallView& wall : walls)
+    if (wall.hulls.set) pass(wall.hulls.set->positions);
   for (const WallView& wall : walls) pass(wall.normals);
   if (!layout.radii.empty()) write_sphere_vertices({1}, out);
   out.flush();
@@ -184,6 +186,10 @@ void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout
     for (const std::uint16_t index : sphere_mesh().indices) out.put(index);
   }
   write_part_lists(parts, out);
+  for (const WallView& wall : walls) {
+    if (!wall.hulls.set) continue;
+    for (const std::uint16_t index : wall.hulls.set->indices) out.put(index);
+  }
   for (const WallView& wall : walls) write_bonds(wall.bonds, out);
   write_times(layout, out);
   write_poses(layout, out);

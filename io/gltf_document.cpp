@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "io/gltf_hulls.hpp"
 #include "io/gltf_motion.hpp"
 #include "io/gltf_part_text.hpp"
 #include "io/gltf_text.hpp"
@@ -21,11 +22,13 @@ class Document {
         layout_(layout),
         out_(sink),
         motion_(layout, accessor_count(), out_),
-        parts_(layout, motion_.end_accessor(), layout.mesh_count + layout.radii.size(), out_) {}
+        parts_(layout, motion_.end_accessor(), layout.mesh_count + layout.radii.size(), out_),
+        hulls_(walls, layout, {first_projectile(), layout.mesh_count, accessor_count()}, out_) {}
 
   std::uint64_t write(const std::string& binary_name) {
     out_.text(R"({"asset":{"version":"2.0","generator":"sunder )" SUNDER_VERSION
               R"("},"scene":0,)");
+    hulls_.write_extensions();
     write_scene();
     write_nodes();
     if (!layout_.materials.empty()) {
@@ -101,6 +104,7 @@ class Document {
   GltfText out_;
   GltfMotion motion_;
   GltfPartText parts_;
+  GltfHulls hulls_;
   bool first_accessor_ = true;
 };
 
@@ -153,6 +157,7 @@ void Document::write_nodes() {
   }
   motion_.write_nodes(first);
   parts_.write_nodes(first);
+  hulls_.write_nodes();
   out_.text("]");
 }
 
@@ -167,6 +172,7 @@ void Document::write_wall_node(std::size_t w, std::uint64_t first_child) {
     out_.separate(first);
     out_.integer(first_child + c);
   }
+  hulls_.add_to_wall(w, first);
   if (!first) out_.text("]");
   write_wall_extras(w);
   out_.text("}");
@@ -215,6 +221,7 @@ void Document::write_chunk_node(std::size_t w, std::uint32_t chunk, std::string_
     const Recording& recording = *layout_.recording;
     out_.place(pose_in_wall(recording, recording.walls[w], chunk, *layout_.step));
   }
+  hulls_.write_in_chunk(w, chunk);
   out_.text(R"(,"extras":{"sunder":{"mass":)");
   out_.number(density * p.volume);
   out_.text(R"(,"volume":)");
@@ -268,6 +275,7 @@ void Document::write_meshes() {
   }
   motion_.write_meshes(first);
   parts_.write_meshes(first);
+  hulls_.write_meshes();
   out_.text("]");
 }
 
@@ -372,6 +380,7 @@ void Document::write_accessors() {
   }
   motion_.write_accessors(first_accessor_);
   parts_.write_accessors(first_accessor_);
+  hulls_.write_accessors(first_accessor_);
   out_.text("]");
 }
 

@@ -71,6 +71,7 @@ void lay_out_parts(const Recording& recording, GltfLayout& layout) {
 
 struct Sizes {
   std::uint64_t vertices = 0, coloured = 0, bonds = 0, indices = 0;  // the last two in bytes
+  std::uint64_t hull_vertices = 0, hull_indices = 0;                 // the last in bytes
 };
 
 Sizes lay_out_walls(std::span<const WallView> walls, GltfLayout& layout) {
@@ -82,6 +83,9 @@ Sizes lay_out_walls(std::span<const WallView> walls, GltfLayout& layout) {
     sizes.vertices += wall.vertex_begin.back();
     if (!wall.colours.empty()) sizes.coloured += wall.vertex_begin.back();
     sizes.bonds += wall.bonds.size() * kBondBytes;
+    if (!wall.hulls.set) continue;
+    sizes.hull_vertices += wall.hulls.set->vertex_begin.back();
+    sizes.hull_indices += 2 * wall.hulls.set->indices.size();
   }
   for (const UniqueLists::List& list : layout.lists.lists) {
     layout.list_begin.push_back(sizes.indices);
@@ -102,11 +106,13 @@ std::array<std::uint64_t, kGltfBlocks> lay_out_blocks(const Sizes& walls, GltfLa
   layout.first_part_normal = walls.vertices + (spheres > 0 ? kSphereVertices : 0);
   layout.first_part_uv = walls.vertices;
   layout.part_list_begin = walls.indices + (spheres > 0 ? 2 * kSphereIndices : 0);
-  return {12 * (layout.first_part_position + parts.vertex_count + parts.still_count),
+  layout.first_hull_vertex = layout.first_part_position + parts.vertex_count + parts.still_count;
+  layout.hull_list_begin = layout.part_list_begin + parts.index_bytes;
+  return {12 * (layout.first_hull_vertex + walls.hull_vertices),
           12 * (layout.first_part_normal + parts.vertex_count),
           8 * (layout.first_part_uv + parts.vertex_count),
           12 * (walls.coloured + parts.colour_count),
-          layout.part_list_begin + parts.index_bytes,
+          layout.hull_list_begin + walls.hull_indices,
           walls.bonds,
           4 * (layout.common_times() + parts.key_count),
           12 * (animation.pose_count + animation.scale_count()),

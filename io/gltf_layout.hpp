@@ -44,7 +44,7 @@ struct GltfImage {
 };
 
 /// Everything about a glTF file that is known before its first byte is written. Bytes of the
-/// blocks follow each other in the order of GltfBlock; within each: walls, spheres, parts.
+/// blocks follow each other in the order of GltfBlock; within each: walls, spheres, parts, hulls.
 struct GltfLayout {
   struct Block {
     std::uint64_t begin = 0, size = 0;
@@ -74,6 +74,9 @@ struct GltfLayout {
   GltfParts parts;
   std::uint64_t first_part_position = 0, first_part_normal = 0, first_part_uv = 0;  // vertices
   std::uint64_t part_list_begin = 0;  // bytes into the index block
+
+  // Of hulls, which a file with a recording does not have.
+  std::uint64_t first_hull_vertex = 0, hull_list_begin = 0;
 
   const Block& operator[](GltfBlock block) const { return blocks[static_cast<std::size_t>(block)]; }
   /// Times at the start of their block, which all bodies share; then those of lights.

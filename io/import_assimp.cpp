@@ -10,6 +10,7 @@
 #include <string>
 
 #include "io/export_files.hpp"
+#include "io/hull_view.hpp"
 #include "io/import.hpp"
 #include "io/imported_asset.hpp"
 #include "io/scene_file.hpp"
@@ -125,6 +126,7 @@ class Flattener {
     const aiMetadata* extras = group(node.mMetaData, "sunder");
     if (number(extras, "sunder")) wall = wall_marked(node, extras);
     if (number(extras, "radius")) return;  // a projectile of a recording
+    if (is_hull_name(node.mName.C_Str())) return;
     if (node.mNumMeshes > 0) {
       ImportedChunk chunk{node.mName.C_Str(), {}, {}, {}};
       std::string material;

@@ -116,6 +116,10 @@ class ObjWriter {
         const IndexList range = wall.lists[part.list];
         write_faces(wall.indices.subspan(range.begin, range.count), materials[part.material]);
       }
+      if (wall.hulls.nodes == HullNodes::none) continue;
+      for (std::uint32_t i = 0; i < wall.hulls.count(chunk); ++i)
+        write_hull(*wall.hulls.set, wall.hulls.begin(chunk) + i,
+                   hull_name(wall.hulls.nodes, *name, i), pose_of_chunk(chunk));
     }
   }
   // Begins an object; its faces follow.
@@ -152,6 +156,17 @@ class ObjWriter {
   void finish() { out_.flush(); }
 
  private:
+  void write_hull(const HullSet& set, std::uint32_t hull, const std::string& name,
+                  const Pose& pose) {
+    const std::size_t begin = set.vertex_begin[hull], end = set.vertex_begin[hull + 1];
+    start({name, pose, std::span(set.positions).subspan(3 * begin, 3 * (end - begin)), {}, {}, {}});
+    for (std::size_t i = set.index_begin[hull]; i < set.index_begin[hull + 1]; ++i) {
+      out_.text(i % 3 == 0 ? "f " : " ");
+      out_.integer(position_base_ + positions_[set.indices[i]]);
+      if (i % 3 == 2) out_.text("\n");
+    }
+  }
+
   void write_vertices(const Solid& solid) {
     const bool placed = solid.pose == Pose{};
     for (const std::uint32_t v : positions_.gather(solid.positions)) {

@@ -218,7 +218,8 @@ std::string run_tables() {
           "## Simulation\n\n";
   rows.clear();
   append_rows(rows, field_rows<SimulationParams>());
-  return text + table(rows);
+  return text + table(rows) + "## Hulls\n\nConvex hulls of chunks, for engines.\n\n" +
+         table_of<HullParams>();
 }
 
 }  // namespace

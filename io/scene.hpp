@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fracture/hulls.hpp"
 #include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
 #include "sim/collapse.hpp"
@@ -31,6 +32,7 @@ struct Scene {
   Scenario scenario;
   std::filesystem::path ground_motion_file;  ///< that the scenario names; empty: none
   SimulationParams simulation;
+  HullParams hulls;
   std::vector<std::string> keys;  ///< top-level keys that the file gives, in its order
 };
 

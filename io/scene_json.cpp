@@ -158,7 +158,7 @@ void read_buildings(Scene& scene, const Place& place, const SceneFolder& folder)
   }
 }
 
-/// What verbs other than fracture read.
+/// What stands beside walls, solids and buildings.
 void read_run(Scene& scene, const Place& place) {
   if (const JsonValue* projectiles = place.value.find("projectiles")) {
     scene.projectiles = read_projectiles(Place(place, "projectiles", *projectiles), scene.walls,
@@ -166,6 +166,11 @@ void read_run(Scene& scene, const Place& place) {
   }
   if (const JsonValue* simulation = place.value.find("simulation")) {
     scene.simulation = read_simulation(Place(place, "simulation", *simulation));
+  }
+  if (const JsonValue* hulls = place.value.find("hulls")) {
+    const Place at(place, "hulls", *hulls);
+    check_keys(at, keys_of<HullParams>());
+    read_fields(scene.hulls, at);
   }
 }
 

@@ -49,6 +49,8 @@ inline constexpr SceneKey kSceneKeys[] = {
      "What happens to the building besides projectiles, see below; needs a building."},
     {"simulation", "simulation", "{}", "",
      "How long and how exactly to simulate, see below; `sunder fracture` does not use it."},
+    {"hulls", "hulls", "{}", "",
+     "Collision hulls beside the chunks, see below; only `sunder fracture` uses them."},
 };
 
 inline constexpr SceneKey kWallKeys[] = {

@@ -381,7 +381,8 @@ Json scene_schema() {
                                                         list_schema(reference("projectile")),
                                                         reference("building"),
                                                         reference("scenario"),
-                                                        reference("simulation")};
+                                                        reference("simulation"),
+                                                        reference("hulls")};
   Json properties = Json::object();
   add_keys(properties, kSceneKeys, schemas);
   Json schema = object_schema(std::move(properties), {"sunder"});
@@ -401,7 +402,8 @@ Json scene_schema() {
                            {"override", override_schema()},
                            {"joint_class", joint_class_schema()},
                            {"scenario", scenario_schema()},
-                           {"simulation", fields_schema(field_rows<SimulationParams>())}};
+                           {"simulation", fields_schema(field_rows<SimulationParams>())},
+                           {"hulls", fields_schema(field_rows<HullParams>())}};
   return with_title("sunder scene", std::move(schema));
 }
 

@@ -78,6 +78,12 @@ void check_names(std::span<const WallView> walls) {
     }
   }
   for (const WallView& wall : walls) {
+    const std::string longest = hull_name(wall.hulls.nodes, wall.first_chunk, 0);
+    if (wall.hulls.set && !is_portable(longest)) {
+      refuse("wall name \"" + wall.name + "\"", "is too long for hulls: \"" + longest + "\" has " +
+                                                    std::to_string(longest.size()) +
+                                                    " characters, the most is 56");
+    }
     if (stems.contains(stem_of(wall.name))) {
       refuse("wall name \"" + wall.name + "\"", "is like a chunk's of another wall");
     }

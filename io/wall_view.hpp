@@ -11,6 +11,7 @@
 #include "fracture/asset.hpp"
 #include "fracture/bonds.hpp"
 #include "fracture/chunk_mesh.hpp"
+#include "io/hull_view.hpp"
 
 namespace sunder {
 
@@ -54,6 +55,7 @@ struct WallView {
   std::vector<ViewPart> parts = {};
   std::span<const MassProperties> chunks;  ///< at density 1, wall frame
   std::span<const Bond> bonds;
+  HullView hulls = {};
 
   std::uint32_t chunk_count() const { return static_cast<std::uint32_t>(part_begin.size()) - 1; }
   std::span<const ViewPart> parts_of(std::uint32_t chunk) const {
