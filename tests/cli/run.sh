@@ -64,6 +64,55 @@ END
   expect_text err "would overwrite the input"
 }
 
+hulls() {
+  local mode name size="--wall 3x2x0.2 --cell 0.5 --opening 0.9x1.1@1,0"
+  # shellcheck disable=SC2086
+  expect_exit 0 "$sunder" fracture $size -o plain.glb -o plain.obj
+  # shellcheck disable=SC2086
+  expect_exit 0 "$sunder" fracture $size --hulls none -o none.glb --hull-error 0.5 --max-hulls 3
+  cmp plain.glb none.glb || fail "no hulls change the bytes"
+  for mode in ucx:UCX_wall_chunk_0000_00 convcol:wall_chunk_0000_00-convcolonly; do
+    name=${mode#*:}
+    # shellcheck disable=SC2086
+    expect_exit 0 "$sunder" fracture $size --hulls ${mode%:*} -o h.glb -o h.gltf -o h.obj
+    expect_text err " hulls, at most "
+    expect_text h.gltf "\"name\":\"$name\""
+    expect_text h.obj "o $name"
+    for file in glb gltf obj; do
+      expect_exit 0 "$sunder" check h.$file --report h.json
+      "$sunder" check plain.glb --report plain.json > out
+      for key in chunks triangles; do
+        [ "$(grep "\"$key\"" h.json)" = "$(grep "\"$key\"" plain.json)" ] ||
+          fail "check counts hulls as $key in h.$file"
+      done
+    done
+    # shellcheck disable=SC2086
+    expect_exit 0 "$sunder" fracture $size --hulls ${mode%:*} --threads 3 -o i.glb
+    cmp h.glb i.glb || fail "threads change the hulls"
+  done
+  # shellcheck disable=SC2086
+  expect_exit 0 "$sunder" fracture $size --physics -o p.gltf -o p.glb
+  expect_text p.gltf '"extensionsUsed":["KHR_physics_rigid_bodies"]'
+  expect_text p.gltf '"convexHull":true},"physicsMaterial":0'
+  expect_text p.gltf '"inertiaDiagonal"'
+  expect_text p.gltf '_body_01'
+  expect_exit 0 "$sunder" check p.glb
+  expect_exit 0 "$sunder" check p.gltf
+  echo '{"sunder": 1, "walls": [{}], "hulls": {"nodes": "ucx", "max_hulls": 2}}' > s.json
+  expect_exit 0 "$sunder" fracture s.json -o s.gltf
+  expect_text s.gltf UCX_wall_chunk_0000_00
+  expect_exit 0 "$sunder" fracture s.json --hulls convcol -o s.gltf
+  expect_text s.gltf wall_chunk_0000_00-convcolonly
+  expect_exit 2 "$sunder" fracture s.json --hulls box -o s.gltf
+  expect_exit 2 "$sunder" fracture s.json --hull-error 0 -o s.gltf
+  expect_exit 2 "$sunder" fracture s.json --max-hulls 65 -o s.gltf
+  expect_exit 2 "$sunder" fracture s.json --hull-vertices 3 -o s.gltf
+  expect_text err "/hulls/max_vertices: 3 is outside [4, 255]"
+  expect_exit 4 "$sunder" fracture $wall --hulls ucx -o l.glb --name \
+    abcdefghijabcdefghijabcdefghijabcdefghij
+  expect_text err "is too long for hulls"
+}
+
 solid_errors() {
   put_cube cube.obj
   put_cube open.obj 1
