@@ -98,6 +98,12 @@ hulls() {
   expect_text p.gltf '_body_01'
   expect_exit 0 "$sunder" check p.glb
   expect_exit 0 "$sunder" check p.gltf
+  for mode in "gear.stl --chunks 30" "vase.obj --chunks 90" "scan.ply --chunks 20 --repair"; do
+    # shellcheck disable=SC2086
+    expect_exit 0 "$sunder" fracture "$source/data/models/"$mode --hulls ucx --hull-error 0.2 -o m.glb
+    expect_text err "; 0 chunks above 0.2"
+    expect_exit 0 "$sunder" check m.glb
+  done
   echo '{"sunder": 1, "walls": [{}], "hulls": {"nodes": "ucx", "max_hulls": 2}}' > s.json
   expect_exit 0 "$sunder" fracture s.json -o s.gltf
   expect_text s.gltf UCX_wall_chunk_0000_00
