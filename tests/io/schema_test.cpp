@@ -274,7 +274,8 @@ TEST(SceneSchema, HasEveryKeyOfEveryTable) {
   for (const char* key : {"centre", "into"}) crater.emplace_back(key);
   EXPECT_EQ(property_keys(definitions["crater"]), crater);
   EXPECT_EQ(definitions["solid_pattern"]["oneOf"].size(), std::size(kSolidPatternTypes));
-  EXPECT_EQ(property_keys(schema).size(), 10u);
+  EXPECT_EQ(property_keys(definitions["hulls"]), table_keys<HullParams>());
+  EXPECT_EQ(property_keys(schema).size(), 11u);
 }
 
 TEST(SceneSchema, HasEveryKeyOfABuilding) {
