@@ -9,6 +9,7 @@
 
 #include "sim/block_factor.hpp"
 #include "sim/frame.hpp"
+#include "sim/panel_element.hpp"
 
 namespace sunder {
 
@@ -82,6 +83,16 @@ class FrameSolver {
   void remove_parts(std::span<const std::uint32_t> parts);
   /// So much is left of a slab or wall panel, kg.
   void set_plate_mass(std::uint32_t part, double mass);
+  /// A slab or wall that has a pattern becomes an element of the stiffness, or another one than it
+  /// was: `element` on the nodes of its corners. Its weight, mass and contacts stay where they are
+  /// without it: on its carriers. What its edges are given passes through the carriers' end joints,
+  /// but moments at hinged ends, which go to what the hinge is on. It takes part as long as every
+  /// edge that bears anything has its joint and, held at both ends, its member.
+  /// Throws Error{input} if the part has no pattern, or `nodes` are not its corners.
+  void set_panel(std::uint32_t part, const PanelElement& element);
+  void clear_panel(std::uint32_t part);
+  /// Of a member's own joint: what of joint_load().torque comes from panels on its edges.
+  Vec3 panel_moment(std::uint32_t joint) const;
   /// A plastic hinge at the end of a joint's part a. It turns about the section's axes while its
   /// moments are held, else it is rigid with the rotation that is left. Joint axes, y and z only;
   /// signs as JointLoad, so that moment · rotation is work done.
@@ -120,7 +131,9 @@ class FrameSolver {
   double residual() const;
   /// What the pins of free pieces carry, largest, N or N m: 0 but for rounding.
   double pin_force() const;
-  double strain_energy() const;  ///< ½ uᵀ K u, of the elastic part of u where there are hinges, J
+  /// ½ uᵀ K u, of the elastic part of u where there are hinges, of panels from where they are at
+  /// rest and with the work against their loads; J.
+  double strain_energy() const;
   /// Work of these loads on the displacements as they are, J.
   double work_of(const FrameLoads& loads) const;
   FactorCounts counts() const;
