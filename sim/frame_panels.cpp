@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slabs and walls that are elastic: elements of 24 freedoms between the members along their edges.
+// Slabs that are elastic: elements of 24 freedoms between the members along their edges.
 #include <algorithm>
 
 #include "meshing/error.hpp"
@@ -87,17 +87,12 @@ BlockChange block_of(const PanelMatrix& matrix, const std::array<std::uint32_t, 
 
 void FrameSolver::Impl::set_panel(std::uint32_t part, const PanelElement& element) {
   const std::uint32_t plate = part - frame.slab_part(0);
-  const bool is_slab = part < frame.wall_part(0);
-  if (part < frame.slab_part(0) || plate >= plates.size())
-    throw Error(ErrorCode::input, frame.part_name(part) + ": only slabs and walls are panels");
-  const std::size_t wall = is_slab ? 0 : part - frame.wall_part(0);
-  const auto corners = is_slab ? frame.slabs[plate].nodes : frame.walls[wall].nodes;
-  const std::uint32_t pattern = is_slab ? frame.slabs[plate].pattern : frame.walls[wall].pattern;
-  if (params.free || pattern == kNoPart)
+  if (!params.panels || part < frame.slab_part(0) || part >= frame.wall_part(0) ||
+      frame.slabs[plate].pattern == kNoPart)
     throw Error(ErrorCode::input, frame.part_name(part) +
-                                      ": is no panel, only one with a pattern in a frame that "
-                                      "stands is");
-  if (!std::ranges::is_permutation(corners, element.nodes))
+                                      ": cannot become elastic, only a slab with a pattern can, in "
+                                      "a frame solver that has room for panels");
+  if (!std::ranges::is_permutation(frame.slabs[plate].nodes, element.nodes))
     throw Error(ErrorCode::input,
                 frame.part_name(part) + ": the nodes of its element are not those of its corners");
   auto panel = std::ranges::lower_bound(panels, plate, {}, &Panel::plate);
@@ -161,14 +156,11 @@ void FrameSolver::Impl::place_corners(Panel& panel) const {
     if (!bears(panel.element, k)) continue;
     any = true;
     const std::size_t next = (k + 1) % 4;
-    if (panel.member[k] == kNone) {
-      for (const std::size_t corner : {k, next}) {
-        take(corner, links.main_node(panel.element.nodes[corner]));
-        panel.active &= panel.node[corner] == kFixed;
-      }
+    const std::uint32_t m = panel.member[k];
+    if (m == kNone) {
+      panel.active = false;
       continue;
     }
-    const std::uint32_t m = panel.member[k];
     panel.active &= links.intact(panel.joint[k]) && members[m].role == Role::elastic &&
                     links.end(m, 0).held && links.end(m, 1).held;
     const bool along = frame.members[m].from == panel.element.nodes[k];

@@ -75,16 +75,9 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[0], slab.nodes[2], edges);
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[1], slab.nodes[3], edges);
   }
-  if (!params.free) {
-    const auto add_corners = [&](const auto& plate) {
-      if (plate.pattern == kNoPart) return;
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t k = i + 1; k < 4; ++k)
-          links.add_edges(plate.nodes[i], plate.nodes[k], edges);
-    };
-    std::ranges::for_each(frame.slabs, add_corners);
-    std::ranges::for_each(frame.walls, add_corners);
-  }
+  for (const FrameSlab& slab : frame.slabs)
+    for (std::size_t i = 0; i < 4 && params.panels && slab.pattern != kNoPart; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) links.add_edges(slab.nodes[i], slab.nodes[k], edges);
   if (links.node_count() > 0 && like != nullptr && like->factor) {
     factor.emplace(links.node_count(), edges, *like->factor);
   } else if (links.node_count() > 0) {

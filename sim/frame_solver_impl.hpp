@@ -66,7 +66,7 @@ struct FrameSolver::Impl {
     std::array<Vec3, 2> moment{}, rotation{};
     std::array<bool, 2> flows{};
   };
-  /// A slab or wall as an element of the stiffness.
+  /// A slab as an element of the stiffness.
   struct Panel {
     std::uint32_t plate = kNone;
     PanelElement element;
@@ -149,7 +149,7 @@ struct FrameSolver::Impl {
   double strain_of_hinges() const;
   double work_of(const FrameLoads& loads);
 
-  // frame_panels.cpp: slabs and walls that are elastic.
+  // frame_panels.cpp: slabs that are elastic.
   void set_panel(std::uint32_t part, const PanelElement& element);
   void place_edges(Panel& panel) const;
   void place_corners(Panel& panel) const;

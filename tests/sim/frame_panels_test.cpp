@@ -16,6 +16,8 @@ namespace {
 /// From a panel's frame to the world: a slab lies, its y is the world's -z.
 const Quaternion kLaid{-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
 
+const FrameSolverParams kPanels{.panels = true};
+
 Frame breakable(std::size_t x, std::size_t z, std::size_t storeys) {
   Frame frame = stocked_frame();
   add_regular(frame, regular(x, z, storeys));
@@ -102,7 +104,7 @@ TEST(FramePanels, ASlabOnPostsIsAsOneDenseMatrix) {
     for (int step = 0; step < 2; ++step) {
       if (step == 1) slab.network.break_bonds(bonds_of(slab.asset, seed, 0.1));
       if (!slab.network.loose_chunks().empty()) continue;
-      FrameSolver bare(frame), solver(frame);
+      FrameSolver bare(frame), solver(frame, kPanels);
       solver.set_panel(slab.part, slab.element(true));
       solver.solve(pushed(frame));
       WallAsset left = slab.asset;
@@ -156,7 +158,7 @@ TEST(FramePanels, ASlabOnPostsIsAsOneDenseMatrix) {
       bare.solve(pushed(frame));
       EXPECT_GT(difference(bare.displacements(), u), 1e-3) << "seed " << seed;
       // The slab's joints carry what its edges' anchors do in the dense solution.
-      FrameSolver again(frame);
+      FrameSolver again(frame, kPanels);
       again.set_panel(slab.part, slab.element(true));
       again.set_displacements(u, pushed(frame));
       EXPECT_LT(joints_apart(frame, solver, again), 1e-9) << "seed " << seed;
@@ -184,7 +186,7 @@ TEST(FramePanels, ItsJointsCarryWhatTheAnchorsOfTheirEdgesDo) {
     Slab slab(frame, 2, seed);
     slab.network.set_gravity({0, 0, -9.81});
     slab.network.break_bonds(bonds_of(slab.asset, seed, 0.05));
-    FrameSolver bare(frame), solver(frame);
+    FrameSolver bare(frame), solver(frame, kPanels);
     solver.set_panel(slab.part, slab.element(true));
     const FrameLoads loads = pushed(frame);
     solver.solve(loads);
@@ -228,7 +230,7 @@ TEST(FramePanels, ItsJointsCarryWhatTheAnchorsOfTheirEdgesDo) {
 TEST(FramePanels, TheGroundCarriesWeightContactsAndWhatPanelsAreLoadedBy) {
   const Frame frame = breakable(2, 2, 2);
   Slab slab(frame, 1, 4);
-  FrameSolver bare(frame), solver(frame);
+  FrameSolver bare(frame), solver(frame, kPanels);
   slab.at_rest = random_freedoms(7, 1e-4);
   solver.set_panel(slab.part, slab.element());
   solver.solve(pushed(frame));
@@ -277,7 +279,7 @@ void expect_balance(const Frame& frame, bool hinged) {
     Slab slab(frame, s, 10 + s);
     slab.at_rest = random_freedoms(s, 1e-4);
     slab.network.set_gravity({0, 0, -9.81});
-    FrameSolver solver(frame);
+    FrameSolver solver(frame, kPanels);
     solver.set_panel(slab.part, slab.element(true));
     solver.solve({});
     std::vector<Vec3> force(frame.members.size()), moment(force.size());
@@ -295,9 +297,14 @@ void expect_balance(const Frame& frame, bool hinged) {
         continue;
       }
       const Vec3 at = frame.nodes[joint.node].position;
+      const bool beam = frame.members[joint.a].kind == FrameMember::Kind::beam;
       add(joint.a, at, solver.reaction(j), solver.reaction_moment(j));
       if (!frame.classes[joint.joint_class].rigid)
         add(joint.b, at, {}, passed_by(frame, solver, slab.element(true), joint));
+      const double side = joint.end_a == 1 ? -1 : 1;
+      const Vec3 passed =
+          hinged && beam ? Vec3{} : side * passed_by(frame, solver, slab.element(true), joint);
+      EXPECT_LT(length(joint.axes * solver.panel_moment(j) - passed), 1e-10 * most) << joint.name;
       if (joint.b != kNoPart)
         add(joint.b, at, -1 * solver.reaction(j), -1 * solver.reaction_moment(j));
     }
@@ -324,7 +331,7 @@ TEST(FramePanels, EveryMemberIsInBalance) {
 
 TEST(FramePanels, RigidMotionsStrainNoPanel) {
   const Frame frame = breakable(3, 2, 2);
-  FrameSolver bare(frame), solver(frame);
+  FrameSolver bare(frame), solver(frame, kPanels);
   Slab slab(frame, 1, 3);
   slab.network.break_bonds(bonds_of(slab.asset, 3, 0.05));
   solver.set_panel(slab.part, slab.element());
@@ -349,7 +356,7 @@ TEST(FramePanels, UpdatesAreAsIfBuiltAnewAndWithoutPanelsAsBefore) {
   const Frame frame = breakable(3, 3, 3);
   const FrameLoads loads = pushed(frame);
   for (const double mass : {0.0, 1e4}) {
-    const FrameSolverParams params{.mass = mass};
+    const FrameSolverParams params{.mass = mass, .panels = true};
     FrameSolver bare(frame, params), solver(frame, params);
     std::vector<Slab> slabs;
     for (std::uint32_t s = 0; s < 4; ++s) slabs.emplace_back(frame, 2 * s, s);
@@ -384,7 +391,7 @@ TEST(FramePanels, GoWithTheirJointsAndBeams) {
     for (std::uint32_t j = 0; j < frame.joints.size(); ++j)
       if (frame.joints[j].name == name) joint = j;
     ASSERT_NE(joint, kNoPart) << name;
-    FrameSolver bare(frame), solver(frame);
+    FrameSolver bare(frame), solver(frame, kPanels);
     Slab slab(frame, 1, 1);
     solver.set_panel(slab.part, slab.element());
     for (FrameSolver* each : {&bare, &solver}) {
@@ -401,12 +408,13 @@ TEST(FramePanels, AreRefusedWhereThereIsNone) {
   Slab slab(frame, 0, 1);
   PanelElement wrong = slab.element();
   wrong.nodes[0] = wrong.nodes[1];
-  FrameSolver solver(frame);
+  FrameSolver solver(frame, kPanels);
   EXPECT_THROW(solver.set_panel(slab.part, wrong), Error);
   EXPECT_THROW(solver.set_panel(0, slab.element()), Error);
+  EXPECT_THROW(FrameSolver(frame).set_panel(slab.part, slab.element()), Error);
   Frame whole = frame;
   whole.slabs[0].pattern = kNoPart;
-  EXPECT_THROW(FrameSolver(whole).set_panel(slab.part, slab.element()), Error);
+  EXPECT_THROW(FrameSolver(whole, kPanels).set_panel(slab.part, slab.element()), Error);
 }
 
 // Corners, edges and joints of a turned panel are the same.
@@ -423,7 +431,7 @@ TEST(FramePanels, TheFirstCornerIsNoMatter) {
       for (std::size_t c = 0; c < 24; ++c)
         shifted.edges[k][24 * r + c] = element.edges[from][24 * r + (c + 6) % 24];
   }
-  FrameSolver a(frame), b(frame);
+  FrameSolver a(frame, kPanels), b(frame, kPanels);
   a.set_panel(slab.part, element);
   b.set_panel(slab.part, shifted);
   a.solve(pushed(frame));
@@ -436,7 +444,7 @@ TEST(FramePanels, TheFirstCornerIsNoMatter) {
 TEST(FramePanels, ARingingFrameKeepsItsEnergy) {
   const Frame frame = breakable(2, 2, 2);
   const double dt = 2e-3;
-  FrameSolver solver(frame, {.mass = 4 / (dt * dt)});
+  FrameSolver solver(frame, {.mass = 4 / (dt * dt), .panels = true});
   Slab slab(frame, 1, 6);
   slab.at_rest = random_freedoms(2, 1e-3);
   slab.network.set_gravity({0, 0, -9.81});
