@@ -440,6 +440,35 @@ TEST(FramePanels, TheFirstCornerIsNoMatter) {
   EXPECT_LT(joints_apart(frame, a, b), 1e-11);
 }
 
+// A grid of squares on four posts, pulled at rest towards its middle.
+TEST(FramePanels, ASymmetricSlabMovesItsPostsAlike) {
+  const Frame frame = breakable(2, 2, 1);
+  Slab slab(frame, 0, 1);
+  const WallAsset asset = panel_asset({{6, 6}, 0.15, 1.5, 0}, 1);
+  ChunkNetwork network(asset, panel_concrete(), slab.hold);
+  network.set_gravity({0, 0, -9.81});
+  PanelElement element = element_of(network, slab.nodes, kLaid, true);
+  Vec3 middle;
+  for (const std::uint32_t n : slab.nodes) middle = middle + 0.25 * frame.nodes[n].position;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Vec3 in = -1e-4 * (frame.nodes[slab.nodes[c]].position - middle);
+    element.at_rest[6 * c] = in.x;
+    element.at_rest[6 * c + 2] = in.z;
+  }
+  FrameSolver solver(frame, kPanels);
+  solver.set_panel(slab.part, element);
+  solver.solve({});
+  const Vec3 first = solver.displacement(slab.nodes[0]);
+  EXPECT_LT(first.y, -1e-5);
+  EXPECT_GT(std::fabs(first.x), 1e-5);
+  const double signs[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Vec3 u = solver.displacement(slab.nodes[c]);
+    const Vec3 mirrored{signs[c][0] * first.x, first.y, signs[c][1] * first.z};
+    EXPECT_LT(length(u - mirrored), 1e-9 * length(first)) << "corner " << c;
+  }
+}
+
 // The trapezoidal rule keeps the energy of a linear system but for rounding.
 TEST(FramePanels, ARingingFrameKeepsItsEnergy) {
   const Frame frame = breakable(2, 2, 2);
