@@ -16,6 +16,8 @@ namespace sunder {
 
 /// Symmetric 24 × 24, row by row, of PanelFreedoms.
 using PanelMatrix = std::array<double, 576>;
+/// 12 × 24, row by row: forces and moments at the two corners of an edge by PanelFreedoms.
+using EdgeStiffness = std::array<double, 288>;
 
 /// A force on a chunk, N, at a point, m; wall frame.
 struct ChunkForce {
@@ -69,6 +71,9 @@ class ChunkNetwork {
   /// What weight and contacts put on the corners while these stand still: forces and moments.
   /// After a change as stiffness(), else O(24 chunks).
   PanelFreedoms load();
+  /// The edges' shares of both: what each edge's two corners must put on the anchors of that edge.
+  const std::array<EdgeStiffness, 4>& edge_stiffness();
+  std::array<Twelve, 4> edge_load();  ///< with the corners at rest
   /// The panel in balance with its corners at `freedoms`. One solve.
   PanelState solve(const PanelFreedoms& freedoms) const;
   /// What the anchors of an edge put on the panel in that state, about a point.

@@ -75,6 +75,9 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[0], slab.nodes[2], edges);
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[1], slab.nodes[3], edges);
   }
+  for (const FrameSlab& slab : frame.slabs)
+    for (std::size_t i = 0; i < 4 && params.panels && slab.pattern != kNoPart; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) links.add_edges(slab.nodes[i], slab.nodes[k], edges);
   if (links.node_count() > 0 && like != nullptr && like->factor) {
     factor.emplace(links.node_count(), edges, *like->factor);
   } else if (links.node_count() > 0) {
@@ -172,6 +175,8 @@ void FrameSolver::Impl::recover() {
     }
   }
   add_diaphragms(u, stiff);
+  add_panels(u, stiff);
+  hang_panels();
   laid.carries = pieces.empty();
   turn_hinges();
   for (std::uint32_t s = 0; s < diaphragms.size(); ++s) shear_diaphragm(s);
@@ -190,6 +195,7 @@ double FrameSolver::Impl::axial(std::uint32_t m) const {
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
     Vec3 force = three(forces[m], 6 * end);
     if (members[m].role == Role::elastic) force = force - three(fixed[m], 6 * end);
+    if (!on_edges.empty()) force = force - three(on_edges[m], 6 * end);
     sum += (end == 0 ? -0.5 : 0.5) * dot(x, force);
   }
   return members[m].present() ? sum : 0;
@@ -318,6 +324,7 @@ std::vector<Mechanism> FrameSolver::mechanisms() const {
 
 void FrameSolver::solve(const FrameLoads& loads) {
   impl_->collect(loads, impl_->f);
+  impl_->add_panel_loads(impl_->f);
   impl_->solve_refined();
   impl_->recover();
   if (impl_->params.p_delta) impl_->iterate_second_order();
@@ -328,8 +335,9 @@ JointLoad FrameSolver::joint_load(std::uint32_t j) const {
   if (!impl_->links.intact(j)) return {};
   if (joint.node == kNoPart) {
     const JointLoad& load = impl_->plate_loads[j];
-    return {into(joint.axes, load.force + impl_->diaphragm_shear(j)),
-            into(joint.axes, load.torque)};
+    const JointLoad elastic = impl_->panel_load(j);
+    return {into(joint.axes, load.force + impl_->diaphragm_shear(j) + elastic.force),
+            into(joint.axes, load.torque + elastic.torque)};
   }
   const double side = joint.end_a == 1 ? 1 : -1;
   return {side * into(joint.axes, reaction(j)), side * into(joint.axes, reaction_moment(j))};
@@ -391,7 +399,7 @@ double FrameSolver::strain_energy() const {
   stiffness_times(u, force);
   double sum = 0;
   for (std::size_t i = 0; i < u.size(); ++i) sum += force[i] * u[i];
-  return sum / 2 + impl_->strain_of_hinges();
+  return sum / 2 + impl_->strain_of_hinges() + impl_->strain_of_panels();
 }
 
 FactorCounts FrameSolver::counts() const {
@@ -414,6 +422,7 @@ std::span<const double> FrameSolver::displacements() const {
 void FrameSolver::set_displacements(std::span<const double> u, const FrameLoads& loads) {
   if (impl_->carries(u, loads)) return;
   impl_->collect(loads, impl_->f);
+  impl_->add_panel_loads(impl_->f);
   std::ranges::copy(u, impl_->u.begin());
   impl_->recover();
 }
@@ -424,6 +433,7 @@ void FrameSolver::load_vector(const FrameLoads& loads, std::span<double> f) cons
   } else {
     impl_->collect(loads, f);
   }
+  impl_->add_panel_loads(f);
 }
 
 /// f = Σ of what `apply` makes of each member's displacements.
@@ -452,6 +462,7 @@ void FrameSolver::stiffness_times(std::span<const double> u, std::span<double> f
     return elastic ? impl_->end_force(m, motion) : Twelve{};
   });
   impl_->add_diaphragms(u, f);
+  impl_->add_panels(u, f);
 }
 
 void FrameSolver::mass_times(std::span<const double> a, std::span<double> f) const {
