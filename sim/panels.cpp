@@ -330,6 +330,13 @@ void Panels::note_touches(double dt) {
                                       rotate(back.rotation, impulse));
     }
   }
+  for (const RestingLoad& load : host_.world.resting()) {
+    const auto at = walls_.standing_chunk(load.on);
+    if (!at || !panels_[at->wall].stress) continue;
+    const Pose back = inverse(walls_.wall(at->wall).standing);
+    panels_[at->wall].stress->touch(at->chunk, back * load.point,
+                                    rotate(back.rotation, dt * load.force));
+  }
   for (Panel& panel : panels_)
     if (panel.stress && panel.stands)
       panel.stress->end_step(dt, scene_.rules.load_time, impact_.simulation.max_error);
@@ -373,8 +380,8 @@ void Panels::break_bonds(std::uint32_t w, std::span<const BrokenBond> broken) {
 }
 
 void Panels::after_step(double now, double dt) {
-  const std::vector<Contact> contacts(host_.world.contacts().begin(), host_.world.contacts().end());
-  for (const Contact& contact : contacts) {
+  for (const Contact& contact : host_.world.contacts()) {
+    if (contact.approach < kLeastSpeed) continue;
     meet(contact.a, contact.part_a, contact);
     meet(contact.b, contact.part_b, contact);
   }

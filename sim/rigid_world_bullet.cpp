@@ -15,6 +15,7 @@
 
 #include "sim/impulse_solver.hpp"
 #include "sim/principal_axes.hpp"
+#include "sim/resting.hpp"
 #include "sim/rigid_joint.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/solid.hpp"
@@ -127,7 +128,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::vector<std::unique_ptr<RigidJoint>> joints;  ///< by id; null: removed
   std::vector<std::unique_ptr<Body>> bodies;        ///< by id; null: removed
   std::vector<Body*> awake;                         ///< by rank
-  std::uint32_t moving_count = 0;
+  std::uint32_t moving_count = 0, merged_count = 0;
   std::vector<Contact> contacts;
   Vec3 reaction, weight;
   double deepest = 0;  ///< overlap when the step began, m
@@ -147,6 +148,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
     return *joints[id];
   }
   using WorldParts::task;
+  const std::vector<RestingLoad>& resting();
   void set_mass(Body& body, double mass);
   JointId insert(std::unique_ptr<RigidJoint> joint);
   void remove(RigidJoint& joint);
@@ -178,6 +180,11 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void unite(const Body& a, const Body& b);
   void set_contact_times(const RigidJoint& joint);
   void put_to_sleep(Body& body);
+  void note_bearings(std::span<const char> may_sleep);
+  void merge_resting();
+  void thaw_above(const Body& body);
+  void leave_sleepers(Body& body);
+  const Body* find_body(BodyId id) const { return bodies[id].get(); }
   void begin(Body& body);
   void find_near(const WorldBox& box);
   void meet(Body& one, Body& other);
@@ -210,6 +217,13 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::vector<btTypedConstraint*> solved_joints_;
   std::vector<PartTouch> touches_;
   std::vector<Body*> found_;
+  std::vector<Body*> asleep_;         ///< by rank
+  std::vector<RestingLoad> resting_;  ///< of those, unless resting_is_known_ is false
+  bool resting_is_known_ = true;
+  bool may_merge_ = false;          ///< bodies were added, or fell asleep
+  std::uint64_t slept_before_ = 0;  ///< slept_ when the last step began
+  std::uint64_t slept_ = 0;         ///< how often a body fell asleep
+  std::vector<std::pair<Body*, Bearing>> bearings_;
   btNodeStack stack_;
 };
 
@@ -246,6 +260,7 @@ BodyId World::insert(std::unique_ptr<Body> body) {
     awake.push_back(body.get());
     rank_last();
     ++moving_count;
+    may_merge_ = true;
   }
   bodies.push_back(std::move(body));
   return id;
@@ -257,7 +272,9 @@ void World::remove(Body& body) {
   wake_around(body);
   removeRigidBody(body.in_bullet.get());
   if (body.awake) std::erase(awake, &body);
+  if (!body.awake && body.moves) leave_sleepers(body);
   if (body.moves) --moving_count;
+  resting_is_known_ = false;
   std::erase_if(links_, [&](const Link& link) {
     if (link.a != &body && link.b != &body) return false;
     getDispatcher()->releaseManifold(link.manifold);
@@ -288,9 +305,32 @@ void World::set_mass(Body& body, double mass) {
 void World::wake_alone(Body& body) {
   body.still_for = 0;
   if (body.awake) return;
+  const bool was_merged = body.is_merged;
+  leave_sleepers(body);
   body.awake = true;
   body.in_bullet->setMassProps(body.mass, bullet(body.principal.moments));
   awake.push_back(&body);
+  if (was_merged) thaw_above(body);
+}
+
+void World::leave_sleepers(Body& body) {
+  std::erase(asleep_, &body);
+  if (body.is_merged) --merged_count;
+  body.is_merged = false;
+  body.supports.clear();
+  resting_is_known_ = false;
+}
+
+/// Touching wakes merged bodies no more, so that what lies on one has to be told that it may go.
+void World::thaw_above(const Body& body) {
+  WorldBox box = body.solid.extent(place(body));
+  box.grow(kNeighbour);
+  find_near(box);
+  for (Body* other : std::vector<Body*>(found_)) {
+    const bool rests = std::any_of(other->supports.begin(), other->supports.end(),
+                                   [&](const Support& support) { return support.on == body.id; });
+    if (rests && other->is_merged) wake(*other);
+  }
 }
 
 void World::wake_and_rank(Body& body) {
@@ -390,7 +430,62 @@ void World::put_to_sleep(Body& body) {
   body.in_bullet->setMassProps(0, btVector3(0, 0, 0));
   body.swept = body.solid.rough_extent(place(body));
   set_box(body);
-  std::erase(awake, &body);
+  body.slept = ++slept_;
+  may_merge_ = true;
+  asleep_.insert(std::upper_bound(asleep_.begin(), asleep_.end(), &body, by_rank), &body);
+  resting_is_known_ = false;
+}
+
+/// What bodies that are about to fall asleep lie on. Those with joints hang on them as well: what
+/// they press with is not known.
+void World::note_bearings(std::span<const char> may_sleep) {
+  bearings_.clear();
+  const auto note = [&](Body& body, const Body& on, const Bearing& bearing) {
+    if (!body.awake || !body.joints.empty()) return;
+    bearings_.emplace_back(&body, bearing);
+    bearings_.back().second.support.on = on.id;
+  };
+  for (const Link& link : links_) {
+    if (may_sleep[link.island] == 0) continue;
+    for (std::uint32_t i = link.first; i < link.first + link.count; ++i) {
+      const Meeting& m = task.meetings[i];
+      if (!(m.gap < kTouch)) continue;
+      const btManifoldPoint& p = *m.solved;
+      const Vec3 force = (1 / dt_) * (p.m_appliedImpulse * m.normal +
+                                      ours(p.m_lateralFrictionDir1 * p.m_appliedImpulseLateral1 +
+                                           p.m_lateralFrictionDir2 * p.m_appliedImpulseLateral2));
+      const Vec3 at = m.origin + m.point;
+      note(*m.a, *m.b, {{kNoBody, link.part_b, at, {}}, -1.0 * force, m.normal});
+      note(*m.b, *m.a, {{kNoBody, link.part_a, at, {}}, force, -1.0 * m.normal});
+    }
+  }
+  std::stable_sort(bearings_.begin(), bearings_.end(),
+                   [](const auto& x, const auto& y) { return x.first->slot < y.first->slot; });
+  std::vector<Bearing> own;
+  for (std::size_t begin = 0, end = 0; begin < bearings_.size(); begin = end) {
+    own.clear();
+    for (; end < bearings_.size() && bearings_[end].first == bearings_[begin].first; ++end)
+      own.push_back(bearings_[end].second);
+    bearings_[begin].first->supports = supports_of(own);
+  }
+}
+
+/// Those that fell asleep in the last step had contacts in it.
+const std::vector<RestingLoad>& World::resting() {
+  if (std::exchange(resting_is_known_, true)) return resting_;
+  std::vector<Body*> sleepers;
+  for (Body* body : asleep_)
+    if (body->slept <= slept_before_) sleepers.push_back(body);
+  resting_ = resting_loads(sleepers, params.gravity, [&](BodyId id) { return find_body(id); });
+  return resting_;
+}
+
+/// Keeps the bodies that may move within bounds.
+void World::merge_resting() {
+  const std::uint32_t live = moving_count - merged_count;
+  if (params.max_bodies == 0 || live <= params.max_bodies) return;
+  merged_count += static_cast<std::uint32_t>(
+      merge(asleep_, live - params.max_bodies, [&](BodyId id) { return find_body(id); }));
 }
 
 void World::begin(Body& body) {
@@ -478,7 +573,7 @@ void World::meet(Body& one, Body& other) {
   touches_.clear();
   toucher.find(a.solid, place(a), b.solid, place(b), margin, path_of(a, b), touches_);
   add_links(a, b);
-  if (other.awake || !other.moves) return;
+  if (other.awake || !other.moves || other.is_merged) return;
   const bool wakes = std::any_of(task.meetings.begin() + from, task.meetings.end(), [&](auto& m) {
     return m.arrives || (m.gap < kTouch && !is_slow(one, kWakeShare));
   });
@@ -881,9 +976,19 @@ void World::updateActivationState(btScalar) {
   for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
     if (in_contact_[slot]->still_for < kSleepAfter) may_sleep[find_root(slot)] = 0;
   }
+  bool any = false;
   for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
-    if (may_sleep[find_root(slot)] != 0) put_to_sleep(*in_contact_[slot]);
+    may_sleep[slot] = may_sleep[find_root(slot)];
+    any |= may_sleep[slot] != 0;
   }
+  if (any) {
+    note_bearings(may_sleep);
+    for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
+      if (may_sleep[slot] != 0) put_to_sleep(*in_contact_[slot]);
+    }
+    std::erase_if(awake, [](const Body* body) { return !body->awake; });
+  }
+  if (std::exchange(may_merge_, false)) merge_resting();
 }
 
 void World::step(double dt) {
@@ -892,6 +997,8 @@ void World::step(double dt) {
   reaction = weight = {};
   deepest = 0;
   work = {};
+  if (slept_ != slept_before_) resting_is_known_ = false;
+  slept_before_ = slept_;
   stepSimulation(dt, 0);
   last_dt_ = dt;
 }
@@ -1048,6 +1155,12 @@ void RigidWorld::step(double dt) {
 
 std::span<const Contact> RigidWorld::contacts() const {
   return impl_->world.contacts;
+}
+std::span<const RestingLoad> RigidWorld::resting() const {
+  return impl_->world.resting();
+}
+std::uint32_t RigidWorld::merged_count() const {
+  return impl_->world.merged_count;
 }
 Vec3 RigidWorld::reaction() const {
   return impl_->world.reaction;
