@@ -200,6 +200,7 @@ Panels::Shape& Panels::shape_of(std::uint32_t w) {
   const bool is_web = std::holds_alternative<SpiderwebParams>(shape.made.asset.wall.pattern);
   if (has_strengths(material_of(panel)) && !is_web) {
     shape.network.emplace(shape.made.asset, shape.made.material, panel.hold);
+    shape.sense.emplace(*shape.network, panel.hold.corners);
     shape.network->set_gravity(gravity_in(standing_of(panel)));
     shape.at_rest = shape.network->highest({});
   }
@@ -394,15 +395,12 @@ void Panels::note_touches(double dt) {
       panel.stress->end_step(dt, scene_.rules.load_time, impact_.simulation.max_error);
 }
 
-/// Bound of what a motion of the corners adds to the utilisation of a panel in one piece, which is
-/// a seminorm of what loads it.
+/// Bound of what a motion of the corners adds to the utilisation of a panel in one piece.
 double Panels::added_use(const Panel& panel, const PanelFreedoms& corners,
                          const PanelFreedoms& before) const {
   PanelFreedoms moved = corners;
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= before[i];
-  const Box box = bounding_box(host_.solids[panel.part].outline.outline);
-  const PanelPlate plate{box.high - box.low, 2 * host_.solids[panel.part].half_length, {}};
-  return panel_stress_bound(plate, material_of(panel), moved, {});
+  return shapes_[panel.shape].sense->added(moved);
 }
 
 /// Whether the frame has moved so that the panel is over its strength somewhere.

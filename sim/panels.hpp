@@ -9,7 +9,7 @@
 
 #include "sim/collapse.hpp"
 #include "sim/frame_motion.hpp"
-#include "sim/panel_bound.hpp"
+#include "sim/panel_sense.hpp"
 #include "sim/panel_stress.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -88,6 +88,7 @@ class Panels {
     std::uint32_t first = 0;  ///< panel
     ImpactWall made;          ///< of the first
     std::optional<ChunkNetwork> network{};
+    std::optional<PanelSense> sense{};
     double at_rest = 0;  ///< utilisation by weight alone
   };
   bool are_alike(const Panel& a, const Panel& b) const;
