@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a step of a building costs whose slabs and walls break, before, at and after a hit; beside
 // the same with every chunk active from the start, and plain Bullet with all chunks as bodies.
-//   bench_building [seconds after the hit]
+//   bench_building [seconds after the hit; 0: the heap of rubble alone]
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -16,7 +16,9 @@
 
 #include "bench/peers_bullet.hpp"
 #include "sim/collapse.hpp"
+#include "sim/rigid_world.hpp"
 #include "sim/step_times.hpp"
+#include "tests/sim/bodies.hpp"
 #include "tests/sim/stocked_frame.hpp"
 
 namespace sunder {
@@ -164,6 +166,37 @@ void measure_bullet() {
         std::to_string(chunks));
 }
 
+/// A heap of chunks falls on the ground, and then a ball into it: who still moves, and what it
+/// costs.
+void measure_heap(std::uint32_t max_bodies) {
+  constexpr int kChunks = 1500;
+  RigidWorld world({.max_bodies = max_bodies});
+  for (int i = 0; i < kChunks; ++i) {
+    const auto at = [&](std::uint64_t k) { return random_unit(1, 10 * i + k) - 0.5; };
+    const Prism prism = chunk(0.25, 0.075, static_cast<std::uint64_t>(i));
+    const Vec3 place{4 * at(1), 0.5 + 0.12 * (i / 30), 4 * at(2)};
+    world.add_body(block_params(40, {0.25, 0.25, 0.075}, place, 10 + i), {&prism, 1});
+  }
+  for (int second = 1; second <= 12; ++second) {
+    if (second == 9) {
+      BodyParams ball = ball_params(888, 0.3, {0, 1, -12}, 1);
+      ball.velocity = {0, 0, 20};
+      world.add_sphere(ball, 0.3);
+    }
+    std::vector<double> ms;
+    for (int i = 0; i < 240; ++i) {
+      const double before = processor_ms();
+      world.step(1.0 / 240);
+      ms.push_back(processor_ms() - before);
+    }
+    print("heap, at most " + std::to_string(max_bodies) + " that may move, second " +
+              std::to_string(second) + (second == 9 ? ", hit" : ""),
+          ms,
+          std::to_string(world.awake().size()) + " awake, " + std::to_string(world.merged_count()) +
+              " merged");
+  }
+}
+
 /// In a process of its own, so that its peak of memory is its own too.
 void alone(const std::string& name, const std::function<void()>& work) {
   std::fflush(stdout);
@@ -188,8 +221,10 @@ int main(int argc, char** argv) {
   const double after = argc > 1 ? std::atof(argv[1]) : 10.5;
   std::printf(
       "| | steps | median ms | p95 ms | longest ms | bodies |\n|---|---|---|---|---|---|\n");
-  alone("as needed", [&] { print("as needed", run(0.6 + after, true), after); });
-  if (after < 2) return 0;
-  alone("everything active", [&] { print("everything active", run(0.6 + 0.5, false), 0.5); });
-  alone("Bullet", [] { measure_bullet(); });
+  if (after > 0) alone("as needed", [&] { print("as needed", run(0.6 + after, true), after); });
+  if (after > 0 && after < 2) return 0;
+  if (after > 0)
+    alone("everything active", [&] { print("everything active", run(0.6 + 0.5, false), 0.5); });
+  if (after > 0) alone("Bullet", [] { measure_bullet(); });
+  for (const std::uint32_t most : {0u, 200u}) alone("heap", [&] { measure_heap(most); });
 }
