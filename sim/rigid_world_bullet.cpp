@@ -33,6 +33,7 @@ constexpr double kTouch = 1e-3;           // m; solids nearer than this touch
 constexpr double kNeighbour = 2e-3;       // m; removing a body wakes what is nearer
 constexpr double kRecall = 0.03;          // m, between a point and what it was a step ago
 constexpr double kSleepAfter = 0.5;       // s
+constexpr std::uint32_t kCrowd = 64;      // bodies in contact that need not sleep together
 constexpr double kEnergyRounding = 1e-9;  // of the work of an island's impulses
 constexpr double kCompliance = 1e-9;   // m/s per N s: direct solvers need it, joints are redundant
 constexpr double kJointedShare = 0.1;  // of the sleeping speeds: joined bodies creep
@@ -180,6 +181,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void unite(const Body& a, const Body& b);
   void set_contact_times(const RigidJoint& joint);
   void put_to_sleep(Body& body);
+  void pick_still(std::vector<char>& may_sleep);
   void note_bearings(std::span<const char> may_sleep);
   void merge_resting();
   void thaw_above(const Body& body);
@@ -227,6 +229,9 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   btNodeStack stack_;
 };
 
+std::uint32_t slot_of(const Body& body) {
+  return body.awake ? body.slot : 0;
+}
 bool by_rank(const Body* a, const Body* b) {
   return ranks_before(*a, *b);
 }
@@ -441,12 +446,12 @@ void World::put_to_sleep(Body& body) {
 void World::note_bearings(std::span<const char> may_sleep) {
   bearings_.clear();
   const auto note = [&](Body& body, const Body& on, const Bearing& bearing) {
-    if (!body.awake || !body.joints.empty()) return;
+    if (!body.awake || may_sleep[body.slot] == 0 || !body.joints.empty()) return;
     bearings_.emplace_back(&body, bearing);
     bearings_.back().second.support.on = on.id;
   };
   for (const Link& link : links_) {
-    if (may_sleep[link.island] == 0) continue;
+    if (may_sleep[slot_of(*link.a)] == 0 && may_sleep[slot_of(*link.b)] == 0) continue;
     for (std::uint32_t i = link.first; i < link.first + link.count; ++i) {
       const Meeting& m = task.meetings[i];
       if (!(m.gap < kTouch)) continue;
@@ -671,10 +676,6 @@ void World::place_for_impulses(Body& body) {
 std::uint32_t World::find_root(std::uint32_t slot) {
   while (root_[slot] != slot) slot = root_[slot] = root_[root_[slot]];
   return slot;
-}
-
-std::uint32_t slot_of(const Body& body) {
-  return body.awake ? body.slot : 0;
 }
 
 void World::unite(const Body& a, const Body& b) {
@@ -956,6 +957,31 @@ void World::integrateTransforms(btScalar) {
   }
 }
 
+/// A heap of many hardly ever lies still as a whole. There whoever has been still for twice as long
+/// sleeps alone, from what is fixed upwards, if all that it touches is still too.
+void World::pick_still(std::vector<char>& may_sleep) {
+  std::vector<std::uint32_t> size(in_contact_.size(), 0);
+  for (std::uint32_t slot = 1; slot < size.size(); ++slot) ++size[find_root(slot)];
+  if (*std::max_element(size.begin(), size.end()) < kCrowd) return;
+  std::vector<char> lies(size.size(), 0), is_restless(size.size(), 0);
+  for (const Link& link : links_) {
+    const std::uint32_t a = slot_of(*link.a), b = slot_of(*link.b);
+    if (a != 0 && b != 0) {
+      if (link.a->still_for < kSleepAfter) is_restless[b] = 1;
+      if (link.b->still_for < kSleepAfter) is_restless[a] = 1;
+      continue;
+    }
+    for (std::uint32_t i = link.first; i < link.first + link.count; ++i)
+      if (task.meetings[i].gap < kTouch) lies[std::max(a, b)] = 1;
+  }
+  for (std::uint32_t slot = 1; slot < size.size(); ++slot) {
+    const Body& body = *in_contact_[slot];
+    if (size[find_root(slot)] >= kCrowd && lies[slot] != 0 && is_restless[slot] == 0 &&
+        body.joints.empty() && body.still_for >= 2 * kSleepAfter)
+      may_sleep[slot] = 1;
+  }
+}
+
 /// Puts islands to sleep that lie on something and have been still for a while.
 void World::updateActivationState(btScalar) {
   for (Body* body : awake) {
@@ -976,12 +1002,11 @@ void World::updateActivationState(btScalar) {
   for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
     if (in_contact_[slot]->still_for < kSleepAfter) may_sleep[find_root(slot)] = 0;
   }
-  bool any = false;
   for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
     may_sleep[slot] = may_sleep[find_root(slot)];
-    any |= may_sleep[slot] != 0;
   }
-  if (any) {
+  pick_still(may_sleep);
+  if (std::any_of(may_sleep.begin(), may_sleep.end(), [](char may) { return may != 0; })) {
     note_bearings(may_sleep);
     for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
       if (may_sleep[slot] != 0) put_to_sleep(*in_contact_[slot]);
