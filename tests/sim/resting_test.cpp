@@ -69,6 +69,20 @@ TEST(Resting, AHeapThatSleepsPressesWithItsWeight) {
   }
 }
 
+TEST(Resting, InACrowdOneThatNeverRestsKeepsOnlyItsNeighboursAwake) {
+  RigidWorld world({});
+  std::vector<BodyId> row;
+  for (int i = 0; i < 70; ++i)
+    row.push_back(add_block(world, block_params(10, {0.2, 0.2, 0.2}, {0.4 * i, 0.2, 0}, 10 + i),
+                            {0.2, 0.2, 0.2}));
+  for (int i = 0; i < 320; ++i) {
+    world.set_velocity(row[0], {0, 0, i % 2 == 0 ? 0.05 : -0.05}, {});
+    world.step(kStep);
+  }
+  EXPECT_TRUE(world.is_awake(row[0]));
+  EXPECT_LE(world.awake().size(), 4u);
+}
+
 TEST(Resting, AStackPressesWhereItStands) {
   RigidWorld world({.has_ground = false});
   const Prism slab = block(1, 0.1, 1);
