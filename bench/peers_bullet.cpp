@@ -16,18 +16,24 @@ btVector3 as_bullet(Vec3 v) {
 }
 
 // Bullet as its users take it: default settings, one hull per convex part.
-class JointedWall {
+class ChunkWorld {
  public:
-  JointedWall(const WallAsset& wall, double strength, double dt, int iterations)
+  explicit ChunkWorld(int iterations)
       : dispatcher_(&configuration_),
         world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
     world_.setGravity({0, -9.81, 0});
     world_.getSolverInfo().m_numIterations = iterations;
     add_static(new btStaticPlaneShape({0, 1, 0}, 0));
+  }
+  /// Chunks where the wall stands.
+  void add_chunks(const WallAsset& wall) {
     for (std::uint32_t c = 0; c < wall.chunks.size(); ++c) add_chunk(wall, c);
+  }
+  /// Of the only wall, which stands at the origin.
+  void add_joints(const WallAsset& wall, double strength, double dt) {
     for (const Bond& bond : wall.bonds) add_joint(bond, strength * bond.area * dt);
   }
-  ~JointedWall() {
+  ~ChunkWorld() {
     for (auto& joint : joints_) world_.removeConstraint(joint.get());
     for (auto& body : bodies_) world_.removeRigidBody(body.get());
   }
@@ -70,7 +76,9 @@ class JointedWall {
                             m.inertia.zz * wall.density);
     bodies_.push_back(
         std::make_unique<btRigidBody>(m.volume * wall.density, nullptr, compound, inertia));
-    bodies_.back()->setWorldTransform(btTransform({0, 0, 0, 1}, as_bullet(m.centroid)));
+    const Quaternion& q = wall.wall.rotation;
+    bodies_.back()->setWorldTransform(
+        btTransform({q.x, q.y, q.z, q.w}, as_bullet(wall.wall.position + rotate(q, m.centroid))));
     bodies_.back()->setActivationState(DISABLE_DEACTIVATION);
     chunks_.push_back(bodies_.back().get());
     world_.addRigidBody(bodies_.back().get());
@@ -100,13 +108,7 @@ class JointedWall {
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
 };
 
-}  // namespace
-
-std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_strength,
-                                      const Projectile& projectile, double dt, int iterations,
-                                      int steps, double seconds) {
-  JointedWall world(wall, tensile_strength, dt, iterations);
-  world.add_ball(projectile);
+std::vector<double> timed_steps(ChunkWorld& world, double dt, int steps, double seconds) {
   std::vector<double> result;
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < steps; ++i) {
@@ -117,6 +119,25 @@ std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_stre
     if (std::chrono::duration<double>(after - start).count() > seconds) break;
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_strength,
+                                      const Projectile& projectile, double dt, int iterations,
+                                      int steps, double seconds) {
+  ChunkWorld world(iterations);
+  world.add_chunks(wall);
+  world.add_joints(wall, tensile_strength, dt);
+  world.add_ball(projectile);
+  return timed_steps(world, dt, steps, seconds);
+}
+
+std::vector<double> step_chunks(std::span<const WallAsset> walls, double dt, int iterations,
+                                int steps, double seconds) {
+  ChunkWorld world(iterations);
+  for (const WallAsset& wall : walls) world.add_chunks(wall);
+  return timed_steps(world, dt, steps, seconds);
 }
 
 }  // namespace sunder

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "fracture/asset.hpp"
@@ -14,5 +15,9 @@ namespace sunder {
 std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_strength,
                                       const Projectile& projectile, double dt, int iterations,
                                       int steps, double seconds);
+
+/// All chunks of walls as active bodies without joints, where the walls stand; as above.
+std::vector<double> step_chunks(std::span<const WallAsset> walls, double dt, int iterations,
+                                int steps, double seconds);
 
 }  // namespace sunder

@@ -49,6 +49,7 @@ void write_joints(JsonLines& json, const Frame& frame, const CollapseResult& r) 
 
 void write_damage(JsonLines& json, const Frame& frame, const CollapseResult& r) {
   json.count("bodies", r.bodies);
+  json.count("merged_bodies", r.merged_bodies);
   json.count("parts_freed", r.parts_freed);
   json.count("chunks_freed", 0);
   write_joints(json, frame, r);

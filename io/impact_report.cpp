@@ -10,6 +10,7 @@ namespace {
 
 void write_damage(JsonLines& json, const ImpactResult& r) {
   json.count("bodies", r.bodies);
+  json.count("merged_bodies", r.merged_bodies);
   json.count("chunks", r.chunks);
   json.count("chunks_freed", r.chunks_freed);
   json.count("chunks_split", r.chunks_split);

@@ -71,6 +71,7 @@ constexpr ReportKey kRunKeys[] = {
 
 constexpr ReportKey kImpactKeys[] = {
     {"bodies", "integer", "Moving bodies at the end."},
+    {"merged_bodies", "integer", "Of them: at rest, and fixed until what they lie on goes."},
     {"chunks", "integer", "Chunks of all walls at the end."},
     {"chunks_freed", "integer", "Chunks that are no longer part of a standing wall."},
     {"chunks_split", "integer", "Free chunks that broke again."},
@@ -101,6 +102,7 @@ constexpr ReportKey kRunEndKeys[] = {
 
 constexpr ReportKey kCollapseKeys[] = {
     {"bodies", "integer", "Moving bodies at the end."},
+    {"merged_bodies", "integer", "Of them: at rest, and fixed until what they lie on goes."},
     {"parts_freed", "integer", "Members, slabs and walls no longer joined to the ground."},
     {"chunks_freed", "integer", "Of walls; 0: parts of a building do not break into chunks."},
     {"broken_joints", "array", "Joints that broke, in order of time."},

@@ -96,6 +96,7 @@ struct ChunkNetwork::Impl {
   std::vector<double> motion;
   PanelMatrix condensed{};
   std::array<EdgeStiffness, 4> of_edges{};
+  double highest = 0;  // utilisation at the last balance
 
   Impl(const WallAsset& asset, const Material& of, const PanelHold& in);
   void make_links(const WallAsset& asset);
@@ -115,6 +116,7 @@ struct ChunkNetwork::Impl {
   Six world_motion(const Link& link, const PanelFreedoms& freedoms) const;
   std::vector<double> driven(std::vector<double> f, const PanelFreedoms& freedoms) const;
   std::vector<BondStress> stresses(std::span<const double> x, const PanelFreedoms& freedoms) const;
+  std::vector<BondStress> balance(const PanelFreedoms& freedoms);
   double residual(const std::vector<double>& f, const std::vector<BondStress>& bonds) const;
   Twelve ends(const Link& link, std::span<const double> x, const PanelFreedoms& freedoms) const;
   std::size_t chunk_count() const { return centres.size(); }
@@ -403,6 +405,16 @@ std::vector<BondStress> ChunkNetwork::Impl::stresses(std::span<const double> x,
   return result;
 }
 
+std::vector<BondStress> ChunkNetwork::Impl::balance(const PanelFreedoms& freedoms) {
+  const std::vector<double> f = loads();
+  std::vector<double> x(f.size());
+  factor->solve(driven(f, freedoms), x);
+  std::vector<BondStress> bonds = stresses(x, freedoms);
+  highest = 0;
+  for (const BondStress& bond : bonds) highest = std::max(highest, bond.utilisation);
+  return bonds;
+}
+
 double ChunkNetwork::Impl::residual(const std::vector<double>& f,
                                     const std::vector<BondStress>& bonds) const {
   std::vector<double> left = f;
@@ -530,18 +542,24 @@ std::vector<std::uint32_t> ChunkNetwork::loose_chunks() const {
 std::vector<BrokenBond> ChunkNetwork::cascade(const PanelFreedoms& freedoms, std::uint32_t most) {
   std::vector<BrokenBond> broken;
   while (broken.size() < most) {
-    const PanelState state = solve(freedoms);
-    double highest = 0;
-    for (const BondStress& bond : state.bonds) highest = std::max(highest, bond.utilisation);
+    const std::vector<BondStress> bonds = impl_->balance(freedoms);
+    const double highest = impl_->highest;
     if (!(highest > 1)) break;
-    const auto worst = std::ranges::find_if(state.bonds, [&](const BondStress& bond) {
-      return bond.utilisation >= (1 - kTie) * highest;
-    });
-    const auto id = static_cast<std::uint32_t>(worst - state.bonds.begin());
+    const auto worst = std::ranges::find_if(
+        bonds, [&](const BondStress& bond) { return bond.utilisation >= (1 - kTie) * highest; });
+    const auto id = static_cast<std::uint32_t>(worst - bonds.begin());
     broken.push_back({id, worst->utilisation, worst->mode});
     break_bonds(std::span(&id, 1));
   }
   return broken;
+}
+
+double ChunkNetwork::highest(const PanelFreedoms& freedoms) {
+  impl_->balance(freedoms);
+  return impl_->highest;
+}
+double ChunkNetwork::highest() const {
+  return impl_->highest;
 }
 
 bool ChunkNetwork::is_intact(std::uint32_t bond) const {

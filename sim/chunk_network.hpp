@@ -89,6 +89,10 @@ class ChunkNetwork {
   /// panel in balance again at the same corners, and so on; at most `most` bonds. In their order.
   std::vector<BrokenBond> cascade(const PanelFreedoms& freedoms, std::uint32_t most = 0xFFFFFFFFu);
 
+  /// Largest utilisation of a bond, with the corners at `freedoms`. One solve.
+  double highest(const PanelFreedoms& freedoms);
+  double highest() const;  ///< when it was asked for last, or a cascade ended
+
   bool is_intact(std::uint32_t bond) const;  ///< and both its ends held
   double mass() const;                       ///< of the chunks that are held, kg
   std::vector<Vec2> sites() const;           ///< that the springs' lengths are taken from, m

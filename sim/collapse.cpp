@@ -31,6 +31,7 @@ WorldParams world_params(const CollapseScene& scene) {
   world.has_ground = simulation.ground;
   world.ground_height = simulation.ground_height;
   world.sleep = simulation.sleep && scene.scenario.ground_motion.times.empty();
+  world.max_bodies = static_cast<std::uint32_t>(simulation.max_bodies);
   world.warm_start = simulation.warm_start;
   if (simulation.joint_solver == "nncg") world.joint_solver = JointSolver::nncg;
   if (simulation.joint_solver == "dantzig") world.joint_solver = JointSolver::dantzig;
@@ -405,6 +406,7 @@ std::vector<std::uint8_t> CollapseRun::grounded() const {
 CollapseResult CollapseRun::outcome() {
   CollapseResult& r = result_;
   r.bodies = world_.body_count();
+  r.merged_bodies = world_.merged_count();
   const MotionLosses losses = motion_->losses();
   r.energy_in += motion_->given();
   r.energy.kinetic = world_.kinetic_energy() + motion_->kinetic();

@@ -107,6 +107,7 @@ struct CollapseResult {
   double simulated_s = 0;
   double step_ms_median = 0, step_ms_p95 = 0, step_ms_max = 0;
   std::uint64_t bodies = 0;                ///< moving bodies at the end
+  std::uint64_t merged_bodies = 0;         ///< of them: at rest and fixed
   std::uint64_t parts_freed = 0;           ///< members, slabs, walls no longer joined to the ground
   std::vector<JointBreak> broken_joints;   ///< by time, then joint
   std::vector<JointYield> yielded_joints;  ///< by time, then joint

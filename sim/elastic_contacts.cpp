@@ -4,7 +4,7 @@
 
 namespace sunder {
 
-void ElasticMotion::note_contacts() {
+void ElasticMotion::note_contacts(double dt) {
   for (const Contact& contact : world_.contacts()) {
     const Vec3 on_a = contact.impulse * contact.normal + contact.tangential;
     if (const std::uint32_t part = part_of(contact.a, contact.part_a); part != kNoPart)
@@ -12,6 +12,9 @@ void ElasticMotion::note_contacts() {
     if (const std::uint32_t part = part_of(contact.b, contact.part_b); part != kNoPart)
       touch(contact, part, -1.0 * on_a);
   }
+  for (const RestingLoad& load : world_.resting())
+    if (const std::uint32_t part = part_of(load.on, load.part); part != kNoPart)
+      touches_.add(part, load.point, dt * load.force, 0);
 }
 
 /// Point and impulse are turned back to where the part stood.

@@ -37,7 +37,7 @@ void ElasticMotion::settle(const Progress& progress) {
 void ElasticMotion::follow(double now, double dt, bool ends_step) {
   standing_.set_time(now);
   since_step_ += dt;
-  note_contacts();
+  note_contacts(dt);
   standing_.forget_changes();
   inner_.forget_changes();
   if (!ends_step) return;

@@ -77,7 +77,7 @@ class ElasticMotion final : public FrameMotion {
   std::vector<std::uint32_t> release_loose();
 
   // elastic_contacts.cpp: what touches the parts.
-  void note_contacts();
+  void note_contacts(double dt);
   void touch(const Contact& contact, std::uint32_t part, Vec3 impulse);
   double speed_ahead(std::uint32_t part) const;
   void limit_blows();

@@ -100,13 +100,17 @@ bool WallRun::stands(std::uint32_t wall) const {
 
 WallRun::NearWall WallRun::nearest_wall(const RigidWorld::Bounds& bounds) const {
   NearWall nearest;
-  for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-    const WallState& wall = walls_[w];
-    if (!stands(w)) continue;
+  for (const StandingWall& wall : standing_)
     if (const double gap = gap_between(bounds, wall.low, wall.high); gap < nearest.gap)
-      nearest = {gap, 2 * wall.half_thickness};
-  }
+      nearest = {gap, wall.thickness};
   return nearest;
+}
+
+void WallRun::list_standing() {
+  standing_.clear();
+  for (std::uint32_t w = 0; w < walls_.size(); ++w)
+    if (stands(w))
+      standing_.push_back({walls_[w].low, walls_[w].high, 2 * walls_[w].half_thickness, w});
 }
 
 double WallRun::nearest_gap(const Shot& shot) const {
@@ -158,14 +162,12 @@ void WallRun::raise_colliders(double dt) {
     const double margin =
         0.05 + (speed + scene_.simulation.gravity * dt) * dt + turn * length(b.high - b.low);
     const Vec3 m{margin, margin, margin};
-    for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-      const WallState& wall = walls_[w];
-      if (!stands(w)) continue;
-      const Vec3 low = b.low - m, high = b.high + m;
+    const Vec3 low = b.low - m, high = b.high + m;
+    for (const StandingWall& wall : standing_) {
       if (low.x > wall.high.x || low.y > wall.high.y || low.z > wall.high.z ||
           high.x < wall.low.x || high.y < wall.low.y || high.z < wall.low.z)
         continue;
-      raise_colliders_near(w, low, high);
+      raise_colliders_near(wall.wall, low, high);
     }
   };
   if (!params_.skip) return;

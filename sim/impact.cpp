@@ -25,6 +25,7 @@ WorldParams world_params(const SimulationParams& simulation) {
   world.has_ground = simulation.ground;
   world.ground_height = simulation.ground_height;
   world.sleep = simulation.sleep;
+  world.max_bodies = static_cast<std::uint32_t>(simulation.max_bodies);
   return world;
 }
 
@@ -147,6 +148,7 @@ void ImpactRun::record(double time) {
 ImpactResult ImpactRun::outcome() {
   ImpactResult& r = result_;
   r.bodies = world_.body_count();
+  r.merged_bodies = world_.merged_count();
   r.energy.kinetic = world_.kinetic_energy();
   r.energy.potential = world_.potential_energy() - walls_.baseline();
   r.energy.numerical = r.energy_in - r.energy.kinetic - r.energy.potential - r.energy.fracture -

@@ -64,6 +64,7 @@ struct ImpactResult {
   double simulated_s = 0;
   double step_ms_median = 0, step_ms_p95 = 0, step_ms_max = 0;
   std::uint64_t bodies = 0;        ///< moving bodies at the end
+  std::uint64_t merged_bodies = 0; ///< of them: at rest and fixed
   std::uint64_t chunks = 0;        ///< of all walls, at the end
   std::uint64_t chunks_freed = 0;  ///< no longer part of a standing wall
   std::uint64_t chunks_split = 0;  ///< free chunks that broke again

@@ -57,6 +57,7 @@ void PanelStress::follow(const Island& island) {
   if (!gone.empty()) network_.remove_chunks(gone);
   std::erase_if(touches_, [&](const Touch& touch) { return present_[touch.chunk] == 0; });
   is_stale_ |= !broken.empty() || !gone.empty();
+  is_broken_ |= !broken.empty() || !gone.empty();
 }
 
 PanelFreedoms PanelStress::moved(const PanelFreedoms& corners) const {
@@ -79,6 +80,8 @@ std::vector<BrokenBond> PanelStress::settle(const PanelFreedoms& corners) {
   network_.set_contacts(forces);
   const std::vector<BrokenBond> broken = network_.cascade(moved(corners));
   for (const BrokenBond& bond : broken) intact_[bond.bond] = 0;
+  is_broken_ |= !broken.empty();
+  utilisation_ = network_.highest();
   last_ = corners;
   is_stale_ = false;
   return broken;

@@ -27,7 +27,10 @@ class PanelStress {
   bool is_stale(const PanelFreedoms& corners, double max_error) const;
   /// Breaks what is over its strength, most utilised first, until what is left carries.
   std::vector<BrokenBond> settle(const PanelFreedoms& corners);
-  double utilisation() const { return utilisation_; }  ///< largest after that
+  double utilisation() const { return utilisation_; }     ///< largest after that
+  const PanelFreedoms& settled() const { return last_; }  ///< corners at that time
+  /// Nothing of it is broken, and what touches it is what did when it settled last.
+  bool is_whole() const { return !is_stale_ && !is_broken_; }
 
  private:
   struct Touch {
@@ -45,6 +48,7 @@ class PanelStress {
   std::vector<Touch> touches_;         ///< by chunk, ascending
   double give_ = 0;                    ///< displacement that a bond at its strength has, m
   bool is_stale_ = true;
+  bool is_broken_ = false;
   double utilisation_ = 0;
 };
 

@@ -16,6 +16,8 @@ namespace {
 constexpr std::uint64_t kWallOrder = std::uint64_t{1} << 58;
 /// What the frame carries of a panel of which nothing is left, kg.
 constexpr double kLeastMass = 1e-3;
+/// Panels are alike whose measures differ by less, m.
+constexpr double kAlike = 1e-9;
 /// Slower contacts break nothing, m/s.
 constexpr double kLeastSpeed = 0.5;
 
@@ -165,7 +167,61 @@ Vec3 Panels::gravity_in(const Pose& pose) const {
 }
 
 void Panels::start() {
-  for (Panel& panel : panels_) panel.start = corners_of(panel);
+  for (std::uint32_t w = 0; w < panels_.size(); ++w) {
+    Panel& panel = panels_[w];
+    panel.start = panel.seen = corners_of(panel);
+    if (has_strengths(material_of(panel))) panel.used = shape_of(w).at_rest;
+  }
+}
+
+bool Panels::are_alike(const Panel& a, const Panel& b) const {
+  const auto near = [](double x, double y) { return std::abs(x - y) < kAlike; };
+  const PartSolid &p = host_.solids[a.part], &q = host_.solids[b.part];
+  const auto& line = p.outline.outline;
+  const auto& other = q.outline.outline;
+  if (a.pattern != b.pattern || given_asset(a) != nullptr || &material_of(a) != &material_of(b) ||
+      anchors_of(a) != anchors_of(b) || line.size() != other.size() ||
+      !p.outline.openings.empty() || !q.outline.openings.empty() ||
+      !near(p.half_length, q.half_length) || !near(p.mass / q.mass, 1))
+    return false;
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if (!(length(line[i] - other[i]) < kAlike)) return false;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (!(length(a.hold.corners[i] - b.hold.corners[i]) < kAlike)) return false;
+  return length(gravity_in(standing_of(a)) - gravity_in(standing_of(b))) < kAlike;
+}
+
+Panels::Shape& Panels::shape_of(std::uint32_t w) {
+  Panel& panel = panels_[w];
+  if (panel.shape != kNoPart) return shapes_[panel.shape];
+  for (panel.shape = 0; panel.shape < shapes_.size(); ++panel.shape)
+    if (are_alike(panel, panels_[shapes_[panel.shape].first])) return shapes_[panel.shape];
+  Shape shape{w, wall_of(panel)};
+  const bool is_web = std::holds_alternative<SpiderwebParams>(shape.made.asset.wall.pattern);
+  if (has_strengths(material_of(panel)) && !is_web) {
+    shape.network.emplace(shape.made.asset, shape.made.material, panel.hold);
+    shape.sense.emplace(*shape.network, panel.hold.corners);
+    shape.network->set_gravity(gravity_in(standing_of(panel)));
+    shape.at_rest = shape.network->highest({});
+  }
+  shapes_.push_back(std::move(shape));
+  return shapes_.back();
+}
+
+/// Chunks of a panel; those of panels that are alike are the same.
+const ImpactWall& Panels::made(std::uint32_t w) {
+  Panel& panel = panels_[w];
+  if (panel.made) return *panel.made;
+  panel.made = shape_of(w).made;
+  if (shapes_[panel.shape].first == w) return *panel.made;
+  Wall& wall = panel.made->asset.wall;
+  const Pose pose = pose_of(host_.solids[panel.part]);
+  const Wall& first = shapes_[panel.shape].made.asset.wall;
+  const Pose of_first = pose_of(host_.solids[panels_[shapes_[panel.shape].first].part]);
+  wall.name = scene_.frame.part_name(panel.part);
+  wall.position = pose * (inverse(of_first) * first.position);
+  wall.rotation = pose.rotation;
+  return *panel.made;
 }
 
 /// Chunks weigh together what the part does.
@@ -246,8 +302,7 @@ void Panels::stand_up(std::uint32_t w) {
   Panel& panel = panels_[w];
   panel.stands = any_awake_ = true;
   const BodyId old = host_.motion.give_up_shape(panel.part);
-  if (!panel.made) panel.made = wall_of(panel);
-  walls_.stand(w, *panel.made);
+  walls_.stand(w, made(w));
   walls_.stand_for(old, w);
   panel.present = present(w);
   if (!panel.stress) make_stress(w);
@@ -258,8 +313,7 @@ void Panels::stand_up(std::uint32_t w) {
 void Panels::make_stress(std::uint32_t w) {
   Panel& panel = panels_[w];
   if (!has_strengths(material_of(panel))) return;
-  if (!panel.made) panel.made = wall_of(panel);
-  const WallAsset& asset = panel.made->asset;
+  const WallAsset& asset = made(w).asset;
   if (std::holds_alternative<SpiderwebParams>(asset.wall.pattern)) return;
   if (panel.stands && walls_.standing(w).chunks.size() != asset.chunks.size()) return;
   panel.stress.emplace(asset, panel.made->material, panel.hold, panel.start,
@@ -285,8 +339,7 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
   if (panel.stands) {
     walls_.let_go(w, motion, track);
   } else {
-    if (!panel.made) panel.made = wall_of(panel);
-    walls_.set_free(w, *panel.made, motion, track);
+    walls_.set_free(w, made(w), motion, track);
     if (struck != kNoBody) walls_.rename(struck, w);
   }
   panel.stands = false;
@@ -330,32 +383,54 @@ void Panels::note_touches(double dt) {
                                       rotate(back.rotation, impulse));
     }
   }
+  for (const RestingLoad& load : host_.world.resting()) {
+    const auto at = walls_.standing_chunk(load.on);
+    if (!at || !panels_[at->wall].stress) continue;
+    const Pose back = inverse(walls_.wall(at->wall).standing);
+    panels_[at->wall].stress->touch(at->chunk, back * load.point,
+                                    rotate(back.rotation, dt * load.force));
+  }
   for (Panel& panel : panels_)
     if (panel.stress && panel.stands)
       panel.stress->end_step(dt, scene_.rules.load_time, impact_.simulation.max_error);
 }
 
-/// Whether the frame has moved so that the panel could be over its strength somewhere.
-bool Panels::may_crack(const Panel& panel) const {
-  const Material& material = material_of(panel);
-  if (!has_strengths(material)) return false;
-  PanelFreedoms moved = corners_of(panel);
+/// Bound of what a motion of the corners adds to the utilisation of a panel in one piece.
+double Panels::added_use(const Panel& panel, const PanelFreedoms& corners,
+                         const PanelFreedoms& before) const {
+  PanelFreedoms moved = corners;
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= before[i];
+  return shapes_[panel.shape].sense->added(moved);
+}
+
+/// Whether the frame has moved so that the panel is over its strength somewhere.
+bool Panels::may_crack(std::uint32_t w) {
+  Panel& panel = panels_[w];
+  if (panel.shape == kNoPart) return false;
+  Shape& shape = shapes_[panel.shape];
+  if (!shape.network) return false;
+  const PanelFreedoms corners = corners_of(panel);
+  if (panel.used + added_use(panel, corners, panel.seen) <= 1) return false;
+  PanelFreedoms moved = corners;
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= panel.start[i];
-  const Box box = bounding_box(host_.solids[panel.part].outline.outline);
-  const PanelPlate plate{box.high - box.low, 2 * host_.solids[panel.part].half_length, {}};
-  return panel_stress_bound(plate, material, moved, gravity_in(standing_of(panel))) > 1;
+  panel.seen = corners;
+  panel.used = shape.network->highest(moved);
+  ++solves_;
+  return panel.used > 1;
 }
 
 void Panels::crack() {
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
     if (!host_.motion.stands(panel.part)) continue;
-    if (walls_.is_waiting(w) && !panel.stress && host_.motion.any_live() && may_crack(panel))
+    if (walls_.is_waiting(w) && !panel.stress && host_.motion.any_live() && may_crack(w))
       make_stress(w);
     if (!panel.stress) continue;
     if (panel.stands) panel.stress->follow(walls_.standing(w));
     const PanelFreedoms corners = corners_of(panel);
-    if (!panel.stress->is_stale(corners, impact_.simulation.max_error)) {
+    if (!panel.stress->is_stale(corners, impact_.simulation.max_error) ||
+        (panel.stress->is_whole() &&
+         panel.stress->utilisation() + added_use(panel, corners, panel.stress->settled()) <= 1)) {
       ++solves_skipped_;
       continue;
     }
@@ -373,8 +448,8 @@ void Panels::break_bonds(std::uint32_t w, std::span<const BrokenBond> broken) {
 }
 
 void Panels::after_step(double now, double dt) {
-  const std::vector<Contact> contacts(host_.world.contacts().begin(), host_.world.contacts().end());
-  for (const Contact& contact : contacts) {
+  for (const Contact& contact : host_.world.contacts()) {
+    if (contact.approach < kLeastSpeed) continue;
     meet(contact.a, contact.part_a, contact);
     meet(contact.b, contact.part_b, contact);
   }

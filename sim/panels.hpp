@@ -9,7 +9,7 @@
 
 #include "sim/collapse.hpp"
 #include "sim/frame_motion.hpp"
-#include "sim/panel_bound.hpp"
+#include "sim/panel_sense.hpp"
 #include "sim/panel_stress.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -76,10 +76,24 @@ class Panels {
     PanelHold hold{};
     PanelFreedoms start{};                   ///< corners at time 0, wall frame
     std::optional<ImpactWall> made{};        ///< its chunks, once they were needed
+    std::uint32_t shape = kNoPart;           ///< of shapes_; kNoPart: not yet known
+    PanelFreedoms seen{};                    ///< corners for which `used` is known
+    double used = 0;                         ///< largest utilisation there, in one piece
     std::optional<PanelStress> stress{};     ///< of one that stands as chunks
     std::vector<std::uint32_t> joints = {};  ///< that held it when it was looked at last
     Vec3 low{}, high{};                      ///< bounds of the part where it stood, world
   };
+  /// What panels of the same size, pattern, material and hold have in common while they are whole.
+  struct Shape {
+    std::uint32_t first = 0;  ///< panel
+    ImpactWall made;          ///< of the first
+    std::optional<ChunkNetwork> network{};
+    std::optional<PanelSense> sense{};
+    double at_rest = 0;  ///< utilisation by weight alone
+  };
+  bool are_alike(const Panel& a, const Panel& b) const;
+  Shape& shape_of(std::uint32_t w);
+  const ImpactWall& made(std::uint32_t w);
   const WallAsset* given_asset(const Panel& panel) const;
   void check_size(const Panel& panel) const;
   static std::vector<Panel> panels_of(const Frame& frame, const std::vector<PartSolid>& solids);
@@ -98,7 +112,9 @@ class Panels {
   const Material& material_of(const Panel& panel) const;
   void make_stress(std::uint32_t w);
   void note_touches(double dt);
-  bool may_crack(const Panel& panel) const;
+  double added_use(const Panel& panel, const PanelFreedoms& corners,
+                   const PanelFreedoms& before) const;
+  bool may_crack(std::uint32_t w);
   void break_bonds(std::uint32_t w, std::span<const BrokenBond> broken);
   std::size_t side_near(const Panel& panel, Vec2 point) const;
   void cut_anchors(std::uint32_t w);
@@ -113,6 +129,7 @@ class Panels {
   const ImpactParams params_;
   ImpactResult result_;
   std::vector<Panel> panels_;  ///< by wall
+  std::vector<Shape> shapes_;
   std::uint64_t solves_ = 0, solves_skipped_ = 0;
   double shift_ = 0;                          ///< of the baseline, J
   bool any_awake_ = false;                    ///< something was near a panel

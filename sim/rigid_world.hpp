@@ -38,6 +38,9 @@ struct WorldParams {
   double ground_height = 0;  ///< m
   Surface ground = {0.6, 0.1};
   bool sleep = true;  ///< bodies that rest are taken out of the solver
+  /// With more bodies than that, those that rest longest are merged with what they lie on: fixed
+  /// until that goes or they are pushed by hand. 0: never.
+  std::uint32_t max_bodies = 0;
 };
 
 /// A convex prism: polygon in the XY plane of its own frame, strictly convex, counter-clockwise,
@@ -90,6 +93,15 @@ struct Contact {
   double approach = 0;              ///< speed at which they came together, m/s
   std::uint32_t part_a = 0, part_b = 0;  ///< which of the bodies' prisms
   Vec3 tangential{};                     ///< impulse of friction on a, N s
+};
+
+/// Force of a body that sleeps on a collider that never moves: its own weight, and what lies on it
+/// asleep. Contacts tell of bodies that are awake alone.
+struct RestingLoad {
+  BodyId on = kNoBody;
+  std::uint32_t part = 0;  ///< which of its prisms
+  Vec3 point;              ///< world
+  Vec3 force;              ///< on the collider, N
 };
 
 /// Where the energy of a step went, J; positive: lost by the bodies. Impulse times the mean of the
@@ -177,6 +189,10 @@ class RigidWorld {
 
   /// Contacts with an impulse in the last step, sorted by the bodies' order.
   std::span<const Contact> contacts() const;
+  /// Of everything that slept throughout the last step, on colliders but the ground, in the order
+  /// of the bodies' keys. Valid until bodies wake, fall asleep or go.
+  std::span<const RestingLoad> resting() const;
+  std::uint32_t merged_count() const;  ///< bodies that rest and are fixed now
   /// Sum of the impulses that ground, static colliders and sleepers gave in the last step, N s.
   Vec3 reaction() const;
   /// Impulse of gravity on the moving bodies in the last step, N s: the change of momentum is this

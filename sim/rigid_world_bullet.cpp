@@ -15,6 +15,7 @@
 
 #include "sim/impulse_solver.hpp"
 #include "sim/principal_axes.hpp"
+#include "sim/resting.hpp"
 #include "sim/rigid_joint.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/solid.hpp"
@@ -32,6 +33,7 @@ constexpr double kTouch = 1e-3;           // m; solids nearer than this touch
 constexpr double kNeighbour = 2e-3;       // m; removing a body wakes what is nearer
 constexpr double kRecall = 0.03;          // m, between a point and what it was a step ago
 constexpr double kSleepAfter = 0.5;       // s
+constexpr std::uint32_t kCrowd = 64;      // bodies in contact that need not sleep together
 constexpr double kEnergyRounding = 1e-9;  // of the work of an island's impulses
 constexpr double kCompliance = 1e-9;   // m/s per N s: direct solvers need it, joints are redundant
 constexpr double kJointedShare = 0.1;  // of the sleeping speeds: joined bodies creep
@@ -127,7 +129,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::vector<std::unique_ptr<RigidJoint>> joints;  ///< by id; null: removed
   std::vector<std::unique_ptr<Body>> bodies;        ///< by id; null: removed
   std::vector<Body*> awake;                         ///< by rank
-  std::uint32_t moving_count = 0;
+  std::uint32_t moving_count = 0, merged_count = 0;
   std::vector<Contact> contacts;
   Vec3 reaction, weight;
   double deepest = 0;  ///< overlap when the step began, m
@@ -147,6 +149,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
     return *joints[id];
   }
   using WorldParts::task;
+  const std::vector<RestingLoad>& resting();
   void set_mass(Body& body, double mass);
   JointId insert(std::unique_ptr<RigidJoint> joint);
   void remove(RigidJoint& joint);
@@ -178,6 +181,12 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void unite(const Body& a, const Body& b);
   void set_contact_times(const RigidJoint& joint);
   void put_to_sleep(Body& body);
+  void pick_still(std::vector<char>& may_sleep);
+  void note_bearings(std::span<const char> may_sleep);
+  void merge_resting();
+  void thaw_above(const Body& body);
+  void leave_sleepers(Body& body);
+  const Body* find_body(BodyId id) const { return bodies[id].get(); }
   void begin(Body& body);
   void find_near(const WorldBox& box);
   void meet(Body& one, Body& other);
@@ -210,9 +219,19 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::vector<btTypedConstraint*> solved_joints_;
   std::vector<PartTouch> touches_;
   std::vector<Body*> found_;
+  std::vector<Body*> asleep_;         ///< by rank
+  std::vector<RestingLoad> resting_;  ///< of those, unless resting_is_known_ is false
+  bool resting_is_known_ = true;
+  bool may_merge_ = false;          ///< bodies were added, or fell asleep
+  std::uint64_t slept_before_ = 0;  ///< slept_ when the last step began
+  std::uint64_t slept_ = 0;         ///< how often a body fell asleep
+  std::vector<std::pair<Body*, Bearing>> bearings_;
   btNodeStack stack_;
 };
 
+std::uint32_t slot_of(const Body& body) {
+  return body.awake ? body.slot : 0;
+}
 bool by_rank(const Body* a, const Body* b) {
   return ranks_before(*a, *b);
 }
@@ -246,6 +265,7 @@ BodyId World::insert(std::unique_ptr<Body> body) {
     awake.push_back(body.get());
     rank_last();
     ++moving_count;
+    may_merge_ = true;
   }
   bodies.push_back(std::move(body));
   return id;
@@ -257,7 +277,9 @@ void World::remove(Body& body) {
   wake_around(body);
   removeRigidBody(body.in_bullet.get());
   if (body.awake) std::erase(awake, &body);
+  if (!body.awake && body.moves) leave_sleepers(body);
   if (body.moves) --moving_count;
+  resting_is_known_ = false;
   std::erase_if(links_, [&](const Link& link) {
     if (link.a != &body && link.b != &body) return false;
     getDispatcher()->releaseManifold(link.manifold);
@@ -288,9 +310,32 @@ void World::set_mass(Body& body, double mass) {
 void World::wake_alone(Body& body) {
   body.still_for = 0;
   if (body.awake) return;
+  const bool was_merged = body.is_merged;
+  leave_sleepers(body);
   body.awake = true;
   body.in_bullet->setMassProps(body.mass, bullet(body.principal.moments));
   awake.push_back(&body);
+  if (was_merged) thaw_above(body);
+}
+
+void World::leave_sleepers(Body& body) {
+  std::erase(asleep_, &body);
+  if (body.is_merged) --merged_count;
+  body.is_merged = false;
+  body.supports.clear();
+  resting_is_known_ = false;
+}
+
+/// Touching wakes merged bodies no more, so that what lies on one has to be told that it may go.
+void World::thaw_above(const Body& body) {
+  WorldBox box = body.solid.extent(place(body));
+  box.grow(kNeighbour);
+  find_near(box);
+  for (Body* other : std::vector<Body*>(found_)) {
+    const bool rests = std::any_of(other->supports.begin(), other->supports.end(),
+                                   [&](const Support& support) { return support.on == body.id; });
+    if (rests && other->is_merged) wake(*other);
+  }
 }
 
 void World::wake_and_rank(Body& body) {
@@ -390,7 +435,62 @@ void World::put_to_sleep(Body& body) {
   body.in_bullet->setMassProps(0, btVector3(0, 0, 0));
   body.swept = body.solid.rough_extent(place(body));
   set_box(body);
-  std::erase(awake, &body);
+  body.slept = ++slept_;
+  may_merge_ = true;
+  asleep_.insert(std::upper_bound(asleep_.begin(), asleep_.end(), &body, by_rank), &body);
+  resting_is_known_ = false;
+}
+
+/// What bodies that are about to fall asleep lie on. Those with joints hang on them as well: what
+/// they press with is not known.
+void World::note_bearings(std::span<const char> may_sleep) {
+  bearings_.clear();
+  const auto note = [&](Body& body, const Body& on, const Bearing& bearing) {
+    if (!body.awake || may_sleep[body.slot] == 0 || !body.joints.empty()) return;
+    bearings_.emplace_back(&body, bearing);
+    bearings_.back().second.support.on = on.id;
+  };
+  for (const Link& link : links_) {
+    if (may_sleep[slot_of(*link.a)] == 0 && may_sleep[slot_of(*link.b)] == 0) continue;
+    for (std::uint32_t i = link.first; i < link.first + link.count; ++i) {
+      const Meeting& m = task.meetings[i];
+      if (!(m.gap < kTouch)) continue;
+      const btManifoldPoint& p = *m.solved;
+      const Vec3 force = (1 / dt_) * (p.m_appliedImpulse * m.normal +
+                                      ours(p.m_lateralFrictionDir1 * p.m_appliedImpulseLateral1 +
+                                           p.m_lateralFrictionDir2 * p.m_appliedImpulseLateral2));
+      const Vec3 at = m.origin + m.point;
+      note(*m.a, *m.b, {{kNoBody, link.part_b, at, {}}, -1.0 * force, m.normal});
+      note(*m.b, *m.a, {{kNoBody, link.part_a, at, {}}, force, -1.0 * m.normal});
+    }
+  }
+  std::stable_sort(bearings_.begin(), bearings_.end(),
+                   [](const auto& x, const auto& y) { return x.first->slot < y.first->slot; });
+  std::vector<Bearing> own;
+  for (std::size_t begin = 0, end = 0; begin < bearings_.size(); begin = end) {
+    own.clear();
+    for (; end < bearings_.size() && bearings_[end].first == bearings_[begin].first; ++end)
+      own.push_back(bearings_[end].second);
+    bearings_[begin].first->supports = supports_of(own);
+  }
+}
+
+/// Those that fell asleep in the last step had contacts in it.
+const std::vector<RestingLoad>& World::resting() {
+  if (std::exchange(resting_is_known_, true)) return resting_;
+  std::vector<Body*> sleepers;
+  for (Body* body : asleep_)
+    if (body->slept <= slept_before_) sleepers.push_back(body);
+  resting_ = resting_loads(sleepers, params.gravity, [&](BodyId id) { return find_body(id); });
+  return resting_;
+}
+
+/// Keeps the bodies that may move within bounds.
+void World::merge_resting() {
+  const std::uint32_t live = moving_count - merged_count;
+  if (params.max_bodies == 0 || live <= params.max_bodies) return;
+  merged_count += static_cast<std::uint32_t>(
+      merge(asleep_, live - params.max_bodies, [&](BodyId id) { return find_body(id); }));
 }
 
 void World::begin(Body& body) {
@@ -478,7 +578,7 @@ void World::meet(Body& one, Body& other) {
   touches_.clear();
   toucher.find(a.solid, place(a), b.solid, place(b), margin, path_of(a, b), touches_);
   add_links(a, b);
-  if (other.awake || !other.moves) return;
+  if (other.awake || !other.moves || other.is_merged) return;
   const bool wakes = std::any_of(task.meetings.begin() + from, task.meetings.end(), [&](auto& m) {
     return m.arrives || (m.gap < kTouch && !is_slow(one, kWakeShare));
   });
@@ -576,10 +676,6 @@ void World::place_for_impulses(Body& body) {
 std::uint32_t World::find_root(std::uint32_t slot) {
   while (root_[slot] != slot) slot = root_[slot] = root_[root_[slot]];
   return slot;
-}
-
-std::uint32_t slot_of(const Body& body) {
-  return body.awake ? body.slot : 0;
 }
 
 void World::unite(const Body& a, const Body& b) {
@@ -861,6 +957,31 @@ void World::integrateTransforms(btScalar) {
   }
 }
 
+/// A heap of many hardly ever lies still as a whole. There whoever has been still for twice as long
+/// sleeps alone, from what is fixed upwards, if all that it touches is still too.
+void World::pick_still(std::vector<char>& may_sleep) {
+  std::vector<std::uint32_t> size(in_contact_.size(), 0);
+  for (std::uint32_t slot = 1; slot < size.size(); ++slot) ++size[find_root(slot)];
+  if (*std::max_element(size.begin(), size.end()) < kCrowd) return;
+  std::vector<char> lies(size.size(), 0), is_restless(size.size(), 0);
+  for (const Link& link : links_) {
+    const std::uint32_t a = slot_of(*link.a), b = slot_of(*link.b);
+    if (a != 0 && b != 0) {
+      if (link.a->still_for < kSleepAfter) is_restless[b] = 1;
+      if (link.b->still_for < kSleepAfter) is_restless[a] = 1;
+      continue;
+    }
+    for (std::uint32_t i = link.first; i < link.first + link.count; ++i)
+      if (task.meetings[i].gap < kTouch) lies[std::max(a, b)] = 1;
+  }
+  for (std::uint32_t slot = 1; slot < size.size(); ++slot) {
+    const Body& body = *in_contact_[slot];
+    if (size[find_root(slot)] >= kCrowd && lies[slot] != 0 && is_restless[slot] == 0 &&
+        body.joints.empty() && body.still_for >= 2 * kSleepAfter)
+      may_sleep[slot] = 1;
+  }
+}
+
 /// Puts islands to sleep that lie on something and have been still for a while.
 void World::updateActivationState(btScalar) {
   for (Body* body : awake) {
@@ -882,8 +1003,17 @@ void World::updateActivationState(btScalar) {
     if (in_contact_[slot]->still_for < kSleepAfter) may_sleep[find_root(slot)] = 0;
   }
   for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
-    if (may_sleep[find_root(slot)] != 0) put_to_sleep(*in_contact_[slot]);
+    may_sleep[slot] = may_sleep[find_root(slot)];
   }
+  pick_still(may_sleep);
+  if (std::any_of(may_sleep.begin(), may_sleep.end(), [](char may) { return may != 0; })) {
+    note_bearings(may_sleep);
+    for (std::uint32_t slot = 1; slot < in_contact_.size(); ++slot) {
+      if (may_sleep[slot] != 0) put_to_sleep(*in_contact_[slot]);
+    }
+    std::erase_if(awake, [](const Body* body) { return !body->awake; });
+  }
+  if (std::exchange(may_merge_, false)) merge_resting();
 }
 
 void World::step(double dt) {
@@ -892,6 +1022,8 @@ void World::step(double dt) {
   reaction = weight = {};
   deepest = 0;
   work = {};
+  if (slept_ != slept_before_) resting_is_known_ = false;
+  slept_before_ = slept_;
   stepSimulation(dt, 0);
   last_dt_ = dt;
 }
@@ -1048,6 +1180,12 @@ void RigidWorld::step(double dt) {
 
 std::span<const Contact> RigidWorld::contacts() const {
   return impl_->world.contacts;
+}
+std::span<const RestingLoad> RigidWorld::resting() const {
+  return impl_->world.resting();
+}
+std::uint32_t RigidWorld::merged_count() const {
+  return impl_->world.merged_count;
 }
 Vec3 RigidWorld::reaction() const {
   return impl_->world.reaction;

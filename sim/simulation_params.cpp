@@ -36,6 +36,12 @@ std::span<const Field<SimulationParams>> fields() {
        {0, 4}},
       {"sleep", &P::sleep, "",
        "Whether bodies at rest leave the solver until something wakes them."},
+      {"max_bodies",
+       &P::max_bodies,
+       "",
+       "With more bodies than that, those at rest longest are fixed until what they lie on goes; 0: "
+       "never.",
+       {0, 1e6}},
       {.name = "solver",
        .member = &P::solver,
        .unit = "",

@@ -19,6 +19,7 @@ struct SimulationParams {
   double ground_height = 0;        ///< m
   std::int64_t break_depth = 1;    ///< how often a free chunk may break again; 0: never
   bool sleep = true;               ///< bodies at rest leave the solver
+  std::int64_t max_bodies = 4000;  ///< with more, those at rest are fixed; 0: never
   std::string solver = "hybrid";   ///< for buildings
   // Of buildings with the solver "bullet".
   std::string joint_solver = "sequential-impulse";  ///< or nncg, dantzig, lemke

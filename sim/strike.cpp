@@ -388,8 +388,10 @@ void WallRun::add_all_bonds(std::uint32_t index, std::vector<Crack>& broken) con
 
 // What the solver's contacts of the last step break: debris against walls, bodies against anything.
 void WallRun::meet_contacts() {
-  std::vector<Contact> contacts(world_.contacts().begin(), world_.contacts().end());
-  for (Contact& contact : contacts)
+  std::span<const Contact> contacts = world_.contacts();
+  std::vector<Contact> renamed;
+  if (!renamed_.empty()) renamed.assign(contacts.begin(), contacts.end()), contacts = renamed;
+  for (Contact& contact : renamed)
     for (const auto& [old, now] : renamed_) {
       if (contact.a == old) contact.a = now;
       if (contact.b == old) contact.b = now;

@@ -203,6 +203,7 @@ void WallRun::follow_shot(std::uint32_t shot, BodyId body, std::uint32_t track) 
 }
 
 double WallRun::prepare(double dt) {
+  list_standing();
   raise_colliders(dt);
   return distance_limit(dt);
 }

@@ -117,6 +117,12 @@ class WallRun {
     std::uint32_t wall = kNoIsland;  ///< that it hit first
     double side = 0;                 ///< of that wall where it came from, ±1
   };
+  /// A wall of which something stands; beside each other in memory, for what flies and falls.
+  struct StandingWall {
+    Vec3 low, high;
+    double thickness = 0;
+    std::uint32_t wall = 0;
+  };
   struct NearWall {
     double gap = std::numeric_limits<double>::infinity(), thickness = 0;
   };
@@ -166,6 +172,7 @@ class WallRun {
   double distance_limit(double dt) const;
   NearWall nearest_wall(const RigidWorld::Bounds& bounds) const;
   double nearest_gap(const Shot& shot) const;
+  void list_standing();
   void raise_colliders(double dt);
   void raise_colliders_near(std::uint32_t wall, Vec3 low, Vec3 high);
   void raise_collider(std::uint32_t wall, std::uint32_t chunk);
@@ -232,8 +239,9 @@ class WallRun {
   std::vector<WallState> walls_;
   std::vector<Island> islands_;  ///< the first ones are the walls'
   std::vector<Shot> shots_;
-  std::vector<Owner> owners_;        ///< by BodyId
-  std::vector<std::uint32_t> live_;  ///< islands with a body
+  std::vector<Owner> owners_;           ///< by BodyId
+  std::vector<std::uint32_t> live_;     ///< islands with a body
+  std::vector<StandingWall> standing_;  ///< when the substep began
   double now_ = 0;
   double least_thickness_;    ///< of all walls, m
   std::uint64_t serial_ = 0;  ///< of bodies, for their order

@@ -18,6 +18,14 @@ namespace sunder {
 
 struct RigidJoint;
 
+/// What a body that sleeps lies on.
+struct Support {
+  BodyId on = kNoBody;
+  std::uint32_t part = 0;  ///< of its solid
+  Vec3 point;              ///< world
+  Vec3 share;              ///< force on it by weight that the sleeper has to hand on
+};
+
 struct Body {
   explicit Body(Solid of);
   ~Body();
@@ -39,6 +47,9 @@ struct Body {
   Vec3 velocity, spin;
   double still_for = 0;   ///< s
   double exempt_for = 0;  ///< s; meets only balls and the ground
+  std::vector<Support> supports;  ///< of one that sleeps; their shares are together 1 upwards
+  std::uint64_t slept = 0;        ///< when it fell asleep: counts up
+  bool is_merged = false;         ///< asleep, and touching it wakes it no more
   std::vector<RigidJoint*> joints;   ///< by age
   std::vector<const Body*> passes;   ///< bodies that it never touches
   std::vector<const Body*> near;     ///< up to two joints away, sorted; valid if near_is_known

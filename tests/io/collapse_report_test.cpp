@@ -36,7 +36,7 @@ CollapseResult sample_result() {
   CollapseResult r;
   r.steps = 1200, r.substeps = 1300, r.simulated_s = 5.25;
   r.step_ms_median = 0.5, r.step_ms_p95 = 1.5, r.step_ms_max = 2.5;
-  r.bodies = 31, r.parts_freed = 32, r.broken_at_rest = 1;
+  r.bodies = 31, r.merged_bodies = 9, r.parts_freed = 32, r.broken_at_rest = 1;
   r.buckles = {{0.625, "at a node"}};
   r.broken_joints = {{2, -0.25, 1.125, "strength", "linear", "My"},
                      {0, 0.5, 0, "hit", "ball", ""},
@@ -80,7 +80,7 @@ bool schema_accepts(const Json& report) {
 TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
   const Json expected = Json::parse(R"json({
     "version": "0.1.0", "seed": 7, "steps": 1200, "substeps": 1300, "simulated_s": 5.25,
-    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5}, "bodies": 31,
+    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5}, "bodies": 31, "merged_bodies": 9,
     "parts_freed": 32, "chunks_freed": 0,
     "broken_joints": [
       {"joint": "beam@post_b", "time": -0.25, "utilisation": 1.125, "mode": "strength",
