@@ -459,9 +459,12 @@ void CollapseRun::add_outcome(const ImpactResult& panels) {
   r.chunks_split = panels.chunks_split;
   r.broken_bonds = panels.broken_bonds;
   r.crack_area = panels.crack_area;
-  r.panels_broken = static_cast<std::uint64_t>(std::ranges::count_if(
-      r.recording.parts, [](const RecordedPart& part) { return part.wall != kNoTrack; }));
-  r.panels_not_meshed = panels_->count() - r.panels_broken;
+  r.panels = panels_->count();
+  r.panels_meshed = r.recording.walls.size();
+  r.panels_broken = r.panels_meshed - panels.walls_untouched;
+  r.panels_not_meshed = r.panels - r.panels_meshed;
+  r.panel_solves = panels_->solves();
+  r.panel_solves_skipped = panels_->solves_skipped();
   for (std::size_t i = 0; i < panels.projectiles.size(); ++i) {
     ProjectileOutcome& outcome = r.projectiles[i];
     const ProjectileOutcome& there = panels.projectiles[i];

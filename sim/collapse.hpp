@@ -133,8 +133,12 @@ struct CollapseResult {
   double residual = 0;    ///< its largest |K u − f| / |f|
   double joint_work = 0;  ///< lost in joints (rigid ones: shocks and correction), J
   double energy_in = 0;   ///< of projectiles, added loads and ground motion, J
-  // Of slabs and walls that broke.
-  std::uint64_t panels_broken = 0, chunks = 0, chunks_freed = 0, chunks_split = 0;
+  // Of slabs and walls that can break.
+  std::uint64_t panels = 0;         ///< how many there are
+  std::uint64_t panels_meshed = 0;  ///< that became walls of chunks
+  std::uint64_t panels_broken = 0;  ///< in which something cracked
+  std::uint64_t panel_solves = 0;   ///< of their networks of chunks
+  std::uint64_t chunks = 0, chunks_freed = 0, chunks_split = 0;
   std::uint64_t broken_bonds = 0;
   double crack_area = 0;               ///< m², one side
   std::uint64_t solver_fallbacks = 0;  ///< steps in which a direct solver failed
@@ -144,7 +148,8 @@ struct CollapseResult {
   std::uint64_t body_steps_asleep = 0;
   std::uint64_t joint_steps_not_read = 0;
   std::uint64_t poses_not_recorded = 0;
-  std::uint64_t panels_not_meshed = 0;  ///< that could break, and never had to
+  std::uint64_t panels_not_meshed = 0;     ///< that could break, and never had to
+  std::uint64_t panel_solves_skipped = 0;  ///< of networks, in steps in which nothing had changed
   std::vector<std::string> warnings;
   Recording recording;
 };
