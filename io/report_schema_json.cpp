@@ -162,6 +162,7 @@ constexpr ReportKey kModeKeys[] = {
     {"unbraced", "integer", "The last beam at the joint of two posts was gone."},
     {"removed", "integer", "Its part was taken away by the scenario."},
     {"unheld", "integer", "What it held had lost too many other joints to be in balance."},
+    {"panel", "integer", "The slab or wall that it held fell apart, or hit something as it fell."},
 };
 
 constexpr ReportKey kPanelKeys[] = {

@@ -82,9 +82,10 @@ struct JointBreak {
   std::uint32_t joint = 0;
   double time = 0;         ///< s
   double utilisation = 0;  ///< demand by capacity of what broke it
-  /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed"
+  /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed",
+  /// "unheld", "panel" (what it held fell apart)
   std::string_view mode;
-  std::string rule;       ///< interaction, "ec3", "euler", "paper"; name of the projectile
+  std::string rule;  ///< interaction, "ec3", "euler", "paper"; name of the projectile or the panel
   std::string component;  ///< N, Vy, Vz, T, My, Mz, rotation; "" otherwise
 };
 
