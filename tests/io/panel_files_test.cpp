@@ -96,7 +96,8 @@ TEST(PanelFiles, WallOfAFileStandsInTheBuilding) {
   const TestFolder folder;
   const std::filesystem::path path =
       write(folder / "s.json", scene_text(R"("walls": {"thickness": 0.1, "asset": "w.glb"})"));
-  write_front_wall(*read_scene(path).building, 0, folder / "w.glb");
+  write_front_wall(*parse_scene(scene_text(R"("walls": {"thickness": 0.1})"), "s.json").building,
+                   0, folder / "w.glb");
   const CollapseScene scene = collapse_scene(read_scene(path));
   const CollapseResult r = simulate_collapse(scene);
   EXPECT_TRUE(r.projectiles[0].perforated);
@@ -132,7 +133,8 @@ TEST(PanelFiles, FilesOfARunShowChunksInThePanelsPlace) {
   const Glb glb(text_of(folder / "run.glb"));
   ASSERT_FALSE(r.recording.walls.empty());
   for (const RecordedWall& wall : r.recording.walls) {
-    EXPECT_FALSE(glb.node_of.contains(wall.asset.wall.name + "_whole"));
+    const Json& whole = glb.json["nodes"][glb.node_of.at(wall.asset.wall.name + "_whole")];
+    EXPECT_FALSE(whole.contains("mesh")) << "shown by its chunks";
     for (std::uint32_t c = 0; c < wall.asset.chunks.size(); ++c) {
       const std::string name = wall.asset.chunk_name(c);
       ASSERT_TRUE(glb.node_of.contains(name)) << name;
