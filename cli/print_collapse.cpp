@@ -63,12 +63,23 @@ void print_damage(const Frame& frame, const CollapseResult& r) {
                  1e-3 * r.first_failure_load);
 }
 
+void print_panels(const CollapseResult& r) {
+  if (r.panels == 0) return;
+  std::fprintf(stderr,
+               "%llu of %llu breakable slabs and walls broken, %llu of %llu chunks freed, %llu "
+               "split; %llu bonds broken, %.4g m² of cracks\n",
+               as_count(r.panels_broken), as_count(r.panels), as_count(r.chunks_freed),
+               as_count(r.chunks), as_count(r.chunks_split), as_count(r.broken_bonds),
+               r.crack_area);
+}
+
 }  // namespace
 
 void print_collapse(const CollapseScene& scene, const CollapseResult& result) {
   print_building(scene.frame, result);
   for (const ProjectileOutcome& p : result.projectiles) print_projectile(p);
   print_damage(scene.frame, result);
+  print_panels(result);
   print_ledger(result.energy_in, result.energy, result.joint_work);
   print_steps(result, scene.seed);
   if (result.solver_fallbacks > 0)

@@ -51,9 +51,18 @@ void write_damage(JsonLines& json, const Frame& frame, const CollapseResult& r) 
   json.count("bodies", r.bodies);
   json.count("merged_bodies", r.merged_bodies);
   json.count("parts_freed", r.parts_freed);
-  json.count("chunks_freed", 0);
+  json.open("panels", '{');
+  json.count("count", r.panels);
+  json.count("meshed", r.panels_meshed);
+  json.count("broken", r.panels_broken);
+  json.count("solves", r.panel_solves);
+  json.close();
+  json.count("chunks", r.chunks);
+  json.count("chunks_freed", r.chunks_freed);
+  json.count("chunks_split", r.chunks_split);
   write_joints(json, frame, r);
-  json.count("broken_bonds", 0);
+  json.count("broken_bonds", r.broken_bonds);
+  json.number("crack_area", r.crack_area);
   json.number("max_utilisation", r.max_utilisation);
   json.number("utilisation_at_rest", r.utilisation_at_rest);
   json.number("first_failure_load", r.first_failure_load);
@@ -112,6 +121,8 @@ void write_skipped(JsonLines& json, const CollapseResult& r) {
   json.count("body_steps_asleep", r.body_steps_asleep);
   json.count("joint_steps_not_read", r.joint_steps_not_read);
   json.count("poses_not_recorded", r.poses_not_recorded);
+  json.count("panels_not_meshed", r.panels_not_meshed);
+  json.count("panel_solves", r.panel_solves_skipped);
   json.close();
 }
 

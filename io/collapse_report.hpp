@@ -25,8 +25,8 @@ struct CollapseReport {
 std::string collapse_report_json(const CollapseReport& report);
 
 /// Every mode of JointBreak, in the order of the report's "broken_by".
-inline constexpr std::array<std::string_view, 6> kBreakModes = {"strength", "hit", "buckling",
-                                                                "unbraced", "removed", "unheld"};
+inline constexpr std::array<std::string_view, 7> kBreakModes = {
+    "strength", "hit", "buckling", "unbraced", "removed", "unheld", "panel"};
 /// Broken joints of each mode.
 std::array<std::uint64_t, kBreakModes.size()> count_by_mode(const CollapseResult& result);
 

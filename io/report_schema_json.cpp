@@ -104,7 +104,10 @@ constexpr ReportKey kCollapseKeys[] = {
     {"bodies", "integer", "Moving bodies at the end."},
     {"merged_bodies", "integer", "Of them: at rest, and fixed until what they lie on goes."},
     {"parts_freed", "integer", "Members, slabs and walls no longer joined to the ground."},
-    {"chunks_freed", "integer", "Of walls; 0: parts of a building do not break into chunks."},
+    {"panels", "object", "Slabs and walls that can break into chunks."},
+    {"chunks", "integer", "Chunks of those that were meshed, at the end."},
+    {"chunks_freed", "integer", "Chunks that no longer hang on the frame."},
+    {"chunks_split", "integer", "Free chunks that broke again."},
     {"broken_joints", "array", "Joints that broke, in order of time."},
     {"yielded_joints", "array", "Joints that became plastic hinges, in order of time."},
     {"broken_by", "object", "How many broke in which mode."},
@@ -113,7 +116,8 @@ constexpr ReportKey kCollapseKeys[] = {
     {"buckles", "array",
      "When what stands had no second-order equilibrium any more; from then on it is solved in "
      "first order."},
-    {"broken_bonds", "integer", "Of walls; 0: parts of a building do not break into chunks."},
+    {"broken_bonds", "integer", "Bonds and anchors of slabs and walls that broke."},
+    {"crack_area", "number", "New crack surface, one side counted. Unit: m²."},
     {"max_utilisation", "number", "Largest of any joint or post from time 0 on; 1 breaks."},
     {"utilisation_at_rest", "number", "Largest of any joint or post at time 0."},
     {"first_failure_load", "number",
@@ -160,6 +164,14 @@ constexpr ReportKey kModeKeys[] = {
     {"unbraced", "integer", "The last beam at the joint of two posts was gone."},
     {"removed", "integer", "Its part was taken away by the scenario."},
     {"unheld", "integer", "What it held had lost too many other joints to be in balance."},
+    {"panel", "integer", "The slab or wall that it held fell apart, or hit something as it fell."},
+};
+
+constexpr ReportKey kPanelKeys[] = {
+    {"count", "integer", "How many there are."},
+    {"meshed", "integer", "That had to be made as walls of chunks."},
+    {"broken", "integer", "In which a bond or an anchor broke."},
+    {"solves", "integer", "Solutions of their networks of chunks."},
 };
 
 constexpr ReportKey kSagKeys[] = {
@@ -270,6 +282,8 @@ constexpr ReportKey kCollapseSkippedKeys[] = {
     {"body_steps_asleep", "integer", "Bodies × steps at rest."},
     {"joint_steps_not_read", "integer", "Joints × steps whose load was known without asking."},
     {"poses_not_recorded", "integer", "Poses of what did not move."},
+    {"panels_not_meshed", "integer", "Slabs and walls that could break, and never had to."},
+    {"panel_solves", "integer", "Networks × steps in which nothing had changed for them."},
 };
 
 /// An object of the keys of these tables, all of them required.
@@ -378,6 +392,7 @@ std::string collapse_report_schema() {
   fill(properties["yielded_joints"], list_of(object_of(kJointYieldKeys)));
   fill(properties["buckles"], list_of(object_of(kBucklingKeys)));
   fill(properties["broken_by"], object_of(kModeKeys));
+  fill(properties["panels"], object_of(kPanelKeys));
   fill(properties["sag"], object_of(kSagKeys));
   fill(properties["reactions"], object_of({kBuildingReactionKeys, kReactionKeys}));
   Json& reactions = properties["reactions"]["properties"];

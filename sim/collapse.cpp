@@ -18,6 +18,8 @@ namespace {
 constexpr double kLeastSubstep = 0.02;
 /// A step is divided at most so often for what flies through panels.
 constexpr double kMostSubsteps = 4096;
+/// Contacts of projectiles that end a substep early, per step; later ones are left to the solver.
+constexpr int kMostArrivals = 64;
 /// Reactions that miss the weight by more are told, relative.
 constexpr double kUneven = 0.02;
 /// Speeds beyond this at the end of settling are told, m/s.
@@ -223,7 +225,13 @@ void CollapseRun::remove_parts() {
 
 /// The other members at the ends of one that is taken away still meet (alternate path method).
 void CollapseRun::hand_over(std::uint32_t member) {
+  // It carries nothing of parts that have been taken away before.
+  std::vector<std::uint32_t> broken;
+  for (const std::uint32_t j : joints_of_[member])
+    if (frame_.joints[j].b == member && !joints_[j].intact) broken.push_back(j);
+  for (const std::uint32_t j : broken) frame_.joints[j].b = kNoPart;
   const std::vector<std::uint32_t> changed = hand_over_joints(frame_, member);
+  for (const std::uint32_t j : broken) frame_.joints[j].b = member;
   for (const std::uint32_t j : changed) {
     std::erase(joints_of_[member], j);
     joints_of_[frame_.joints[j].b].push_back(j);
@@ -232,17 +240,19 @@ void CollapseRun::hand_over(std::uint32_t member) {
 }
 
 void CollapseRun::step_once(double end) {
-  while (now_ < end - 1e-12 * end) {
+  const double least = scene_.simulation.step / kMostSubsteps, nothing = 1e-3 * least;
+  int arrivals = 0;
+  while (end - now_ > nothing) {
     double dt = next_substep(end - now_);
     std::optional<WallRun::Arrival> arrival;
     if (panels_) {
-      dt = std::min(dt, std::max(panels_->prepare(dt), scene_.simulation.step / kMostSubsteps));
-      arrival = panels_->next_arrival(dt);
+      dt = std::min(dt, std::max(panels_->prepare(dt), least));
+      if (arrivals < kMostArrivals) arrival = panels_->next_arrival(dt);
       if (arrival) dt = arrival->time;
     }
-    if (dt > 1e-3 * scene_.simulation.step / kMostSubsteps) {
+    if (dt > nothing) {
       raise_load(dt);
-      advance(dt, now_ + dt >= end - 1e-12 * end);
+      advance(dt, end - (now_ + dt) <= nothing);
       if (panels_) {
         panels_->after_step(now_, dt);
         panels_->follow_frame();
@@ -254,7 +264,10 @@ void CollapseRun::step_once(double end) {
         panels_->follow_frame();
       }
     }
-    if (arrival) panels_->arrive(*arrival);
+    if (arrival) {
+      ++arrivals;
+      panels_->arrive(*arrival);
+    }
     launch_due();
   }
   now_ = end;
@@ -461,9 +474,12 @@ void CollapseRun::add_outcome(const ImpactResult& panels) {
   r.chunks_split = panels.chunks_split;
   r.broken_bonds = panels.broken_bonds;
   r.crack_area = panels.crack_area;
-  r.panels_broken = static_cast<std::uint64_t>(std::ranges::count_if(
-      r.recording.parts, [](const RecordedPart& part) { return part.wall != kNoTrack; }));
-  r.panels_not_meshed = panels_->count() - r.panels_broken;
+  r.panels = panels_->count();
+  r.panels_meshed = r.recording.walls.size();
+  r.panels_broken = r.panels_meshed - panels.walls_untouched;
+  r.panels_not_meshed = r.panels - r.panels_meshed;
+  r.panel_solves = panels_->solves();
+  r.panel_solves_skipped = panels_->solves_skipped();
   for (std::size_t i = 0; i < panels.projectiles.size(); ++i) {
     ProjectileOutcome& outcome = r.projectiles[i];
     const ProjectileOutcome& there = panels.projectiles[i];

@@ -82,9 +82,10 @@ struct JointBreak {
   std::uint32_t joint = 0;
   double time = 0;         ///< s
   double utilisation = 0;  ///< demand by capacity of what broke it
-  /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed"
+  /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed",
+  /// "unheld", "panel" (what it held fell apart)
   std::string_view mode;
-  std::string rule;       ///< interaction, "ec3", "euler", "paper"; name of the projectile
+  std::string rule;  ///< interaction, "ec3", "euler", "paper"; name of the projectile or the panel
   std::string component;  ///< N, Vy, Vz, T, My, Mz, rotation; "" otherwise
 };
 
@@ -134,8 +135,12 @@ struct CollapseResult {
   double residual = 0;    ///< its largest |K u − f| / |f|
   double joint_work = 0;  ///< lost in joints (rigid ones: shocks and correction), J
   double energy_in = 0;   ///< of projectiles, added loads and ground motion, J
-  // Of slabs and walls that broke.
-  std::uint64_t panels_broken = 0, chunks = 0, chunks_freed = 0, chunks_split = 0;
+  // Of slabs and walls that can break.
+  std::uint64_t panels = 0;         ///< how many there are
+  std::uint64_t panels_meshed = 0;  ///< that became walls of chunks
+  std::uint64_t panels_broken = 0;  ///< in which something cracked
+  std::uint64_t panel_solves = 0;   ///< of their networks of chunks
+  std::uint64_t chunks = 0, chunks_freed = 0, chunks_split = 0;
   std::uint64_t broken_bonds = 0;
   double crack_area = 0;               ///< m², one side
   std::uint64_t solver_fallbacks = 0;  ///< steps in which a direct solver failed
@@ -145,7 +150,8 @@ struct CollapseResult {
   std::uint64_t body_steps_asleep = 0;
   std::uint64_t joint_steps_not_read = 0;
   std::uint64_t poses_not_recorded = 0;
-  std::uint64_t panels_not_meshed = 0;  ///< that could break, and never had to
+  std::uint64_t panels_not_meshed = 0;     ///< that could break, and never had to
+  std::uint64_t panel_solves_skipped = 0;  ///< of networks, in steps in which nothing had changed
   std::vector<std::string> warnings;
   Recording recording;
 };

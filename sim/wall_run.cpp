@@ -79,7 +79,10 @@ void WallRun::own(BodyId body, Owner owner) {
 std::vector<std::vector<std::uint32_t>> WallRun::add_wall(std::uint32_t w, bool is_free) {
   const auto count = static_cast<std::uint32_t>(walls_[w].chunks.size());
   std::vector<Bond>& bonds = walls_[w].asset.bonds;
-  if (is_free) std::erase_if(bonds, [](const Bond& bond) { return bond.b == kWorld; });
+  if (is_free) {
+    std::erase_if(bonds, [](const Bond& bond) { return bond.b == kWorld; });
+    walls_[w].asset.wall.anchors.clear();  // nor do cells that a web adds have any
+  }
   least_thickness_ = std::min(least_thickness_, 2 * walls_[w].half_thickness);
   const Components parts = components_of(count, bonds);
   std::vector<std::vector<std::uint32_t>> members(count), loose;

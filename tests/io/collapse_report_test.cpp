@@ -36,6 +36,9 @@ CollapseResult sample_result() {
   CollapseResult r;
   r.steps = 1200, r.substeps = 1300, r.simulated_s = 5.25;
   r.step_ms_median = 0.5, r.step_ms_p95 = 1.5, r.step_ms_max = 2.5;
+  r.panels = 40, r.panels_meshed = 41, r.panels_broken = 42, r.panel_solves = 43;
+  r.chunks = 44, r.chunks_freed = 45, r.chunks_split = 46, r.broken_bonds = 47;
+  r.crack_area = 48.5, r.panels_not_meshed = 49, r.panel_solves_skipped = 50;
   r.bodies = 31, r.merged_bodies = 9, r.parts_freed = 32, r.broken_at_rest = 1;
   r.buckles = {{0.625, "at a node"}};
   r.broken_joints = {{2, -0.25, 1.125, "strength", "linear", "My"},
@@ -80,8 +83,10 @@ bool schema_accepts(const Json& report) {
 TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
   const Json expected = Json::parse(R"json({
     "version": "0.1.0", "seed": 7, "steps": 1200, "substeps": 1300, "simulated_s": 5.25,
-    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5}, "bodies": 31, "merged_bodies": 9,
-    "parts_freed": 32, "chunks_freed": 0,
+    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5}, "bodies": 31,
+    "merged_bodies": 9,
+    "parts_freed": 32, "panels": {"count": 40, "meshed": 41, "broken": 42, "solves": 43},
+    "chunks": 44, "chunks_freed": 45, "chunks_split": 46,
     "broken_joints": [
       {"joint": "beam@post_b", "time": -0.25, "utilisation": 1.125, "mode": "strength",
        "rule": "linear", "component": "My"},
@@ -92,8 +97,9 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
     "yielded_joints": [
       {"joint": "beam@post_a", "time": 0.125, "utilisation": 1.25, "rotation": 0.03125}],
     "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0,
-                  "unheld": 0},
-    "broken_at_rest": 1, "buckles": [{"time": 0.625, "what": "at a node"}], "broken_bonds": 0, "max_utilisation": 4.75,
+                  "unheld": 0, "panel": 0},
+    "broken_at_rest": 1, "buckles": [{"time": 0.625, "what": "at a node"}], "broken_bonds": 47,
+    "crack_area": 48.5, "max_utilisation": 4.75,
     "utilisation_at_rest": 0.375, "first_failure_load": 12500, "joint_gap": 0.0005,
     "sag": {"mean": 0.001, "max": 0.002, "node": "top_a", "end": 0.003},
     "reactions": {"weight": 840500, "error": 1e-6,
@@ -113,7 +119,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
                "residual": 1e-12},
     "solves": {"full": 11, "update": 12, "skipped": 13}, "hash": "00ab0000000000cd",
     "skipped": {"body_steps_asleep": 9000, "joint_steps_not_read": 8000,
-                "poses_not_recorded": 210000},
+                "poses_not_recorded": 210000, "panels_not_meshed": 49, "panel_solves": 50},
     "warnings": ["a \"quoted\" word"],
     "time": {"simulate_s": 1.5, "write_s": 0.25}})json");
   const Json written = sample_json();
@@ -122,7 +128,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
 
 TEST(CollapseReport, EveryBrokenJointIsCountedInItsMode) {
   CollapseResult result;
-  constexpr std::size_t kOften[] = {5, 1, 4, 2, 3, 6};
+  constexpr std::size_t kOften[] = {5, 1, 4, 2, 3, 6, 7};
   for (std::size_t mode = 0; mode < kBreakModes.size(); ++mode)
     result.broken_joints.insert(result.broken_joints.end(), kOften[mode],
                                 {1, 0.5, 2, kBreakModes[mode], "", ""});
@@ -154,6 +160,10 @@ TEST(CollapseReportSchema, RefusesAWrongReport) {
       {"/broken_joints/1/mode", "magic"},
       {"/broken_joints/2/time", nullptr},
       {"/broken_by/hit", -1},
+      {"/panels", 3},
+      {"/panels/broken", -1},
+      {"/crack_area", nullptr},
+      {"/skipped/panels_not_meshed", 0.5},
       {"/sag", nullptr},
       {"/sag/node", 3},
       {"/reactions/weight", "heavy"},
