@@ -15,6 +15,8 @@ void print_soundness(std::FILE* to, const std::string& name, const Soundness& so
       {"chunks are not manifold", s.nonmanifold_chunks},
       {"chunks are inside out", s.inverted_chunks},
       {"pairs of chunks overlap", s.overlapping_pairs},
+      {"chunks cross themselves", s.self_crossing_chunks},
+      {"solids' outer faces cross each other", s.crossing_surfaces},
       {"crack triangles have no partner", s.unmatched_faces},
       {"slivers", s.slivers}};
   for (const auto& [what, number] : faults)

@@ -5,9 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "meshing/random.hpp"
 #include "meshing/region.hpp"
+#include "meshing/self_crossing.hpp"
+#include "meshing/surface_defects.hpp"
 #include "meshing/triangulate.hpp"
 
 namespace sunder {
@@ -29,6 +32,8 @@ class PointTable {
     }
     return slot;
   }
+  std::size_t size() const { return points_.size(); }
+  Vec3 point(std::uint32_t id) const { return {points_[id][0], points_[id][1], points_[id][2]}; }
 
  private:
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
@@ -51,6 +56,20 @@ class PointTable {
   std::vector<std::uint32_t> slots_;
 };
 
+// Whether a mesh has parts that share no vertex.
+bool has_shells(const TriMesh& mesh) {
+  std::vector<std::uint32_t> root(mesh.vertices.size());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&](std::uint32_t v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) root[find(v)] = find(t[0]);
+  return std::ranges::any_of(
+      mesh.triangles, [&](const auto& t) { return find(t[0]) != find(mesh.triangles[0][0]); });
+}
+
 struct CrackTriangle {
   std::array<std::uint32_t, 3> points;  // ascending
   bool even;                            // orientation of the ascending order
@@ -61,6 +80,45 @@ struct FrontTriangle {
   std::array<Vec2, 3> at;  // counter-clockwise
   std::uint32_t chunk;
 };
+
+// Triangles over the table's points, as a mesh of the points that they use.
+class PointTriangles {
+ public:
+  void clear() { triangles_.clear(); }
+  void add(const std::array<std::uint32_t, 3>& points) { triangles_.push_back(points); }
+  TriMesh mesh(const PointTable& table) {
+    TriMesh result;
+    local_.resize(table.size(), kNone);
+    for (const auto& t : triangles_) {
+      auto& triangle = result.triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (local_[t[k]] == kNone) {
+          local_[t[k]] = static_cast<std::uint32_t>(result.vertices.size());
+          result.vertices.push_back(table.point(t[k]));
+        }
+        triangle[k] = local_[t[k]];
+      }
+    }
+    for (const auto& t : triangles_)
+      for (const std::uint32_t id : t) local_[id] = kNone;
+    return result;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<std::uint32_t> local_;  // vertex of each point while a mesh is made
+};
+
+// Whether a closed surface crosses itself by more than rounding, or a shell of it faces the wrong
+// way, as a closed one inside another that is no cavity. Only float32 positions are asked.
+bool is_tangled(const TriMesh& mesh) {
+  constexpr auto kInsideOut = static_cast<std::size_t>(SurfaceDefect::Kind::inside_out);
+  for (const Vec3& p : mesh.vertices)
+    if (!std::isfinite(p.x + p.y + p.z)) return false;  // the volume is not finite either
+  return crosses_itself(mesh, float_rounding(mesh)) ||
+         (has_shells(mesh) && diagnose(mesh, 0).counts[kInsideOut] > 0);
+}
 
 // Measures one wall into a Soundness.
 class WallMeasure {
@@ -81,6 +139,8 @@ class WallMeasure {
     match_cracks();
     progress(0.9);
     if (wall_.has_chunks) is_solid_ ? find_repeated_faces() : find_overlaps();
+    if (is_solid_ && wall_.has_chunks)
+      result_.crossing_surfaces += is_tangled(surface_.mesh(points_));
     result_.chunks += wall_.chunk_count;
     result_.bonds += wall_.bonds;
   }
@@ -169,6 +229,7 @@ class WallMeasure {
     const std::size_t count = chunk.triangles.size() / 3;
     result_.triangles += count;
     edges_.clear();
+    chunk_.clear();
     double volume = 0;
     const Vec3 base = count > 0 ? point(chunk, chunk.triangles[0]) : Vec3{};
     for (std::size_t t = 0; t < count; ++t) {
@@ -183,9 +244,13 @@ class WallMeasure {
         add_triangle(id, c, cracks_);
       } else if (is_solid_) {
         add_triangle(id, c, outer_);
+        surface_.add(id);
       }
+      if (is_solid_) chunk_.add(id);
     }
     count_edges(volume);
+    if (wall_.has_chunks && is_solid_)
+      result_.self_crossing_chunks += is_tangled(chunk_.mesh(points_));
     result_.volume += volume;
     result_.min_chunk_volume = std::min(result_.min_chunk_volume, volume);
     if (wall_.has_chunks) is_solid_ ? judge_thickness(chunk, volume) : add_front(c, chunk);
@@ -362,6 +427,7 @@ class WallMeasure {
   std::vector<std::uint32_t> ids_;
   std::vector<std::uint64_t> edges_;
   std::vector<CrackTriangle> cracks_, outer_;
+  PointTriangles chunk_, surface_;
   bool is_solid_ = false;
   std::vector<FrontTriangle> fronts_;
   std::vector<std::array<std::uint32_t, 2>> pairs_;
@@ -378,7 +444,8 @@ double Soundness::volume_error() const {
 bool Soundness::is_sound() const {
   const bool volume_ok = std::isnan(volume_expected) || volume_error() <= kVolumeTolerance;
   return chunks > 0 && open_chunks == 0 && nonmanifold_chunks == 0 && inverted_chunks == 0 &&
-         unmatched_faces == 0 && overlapping_pairs == 0 && volume_ok;
+         unmatched_faces == 0 && overlapping_pairs == 0 && self_crossing_chunks == 0 &&
+         crossing_surfaces == 0 && volume_ok;
 }
 
 Soundness measure(const std::vector<SoupWall>& walls, const Progress& progress) {

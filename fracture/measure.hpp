@@ -40,7 +40,12 @@ struct Soundness {
   std::uint64_t open_chunks = 0;         ///< some directed edge has no reverse
   std::uint64_t nonmanifold_chunks = 0;  ///< some directed edge occurs twice
   std::uint64_t inverted_chunks = 0;     ///< closed, but the volume is not above 0
-  std::uint64_t unmatched_faces = 0;     ///< crack triangles without exactly one reverse elsewhere
+  /// Of a solid: chunks that cross themselves by more than the rounding of float32
+  /// (float_rounding), or one of whose shells faces the wrong way.
+  std::uint64_t self_crossing_chunks = 0;
+  /// Solids whose outer faces, joined, do.
+  std::uint64_t crossing_surfaces = 0;
+  std::uint64_t unmatched_faces = 0;  ///< crack triangles without exactly one reverse elsewhere
   /// Chunks of a wall whose front faces overlap, decided exactly; of a solid, chunks that have an
   /// outer triangle with the same corners (see docs/formats.md for what that proves).
   std::uint64_t overlapping_pairs = 0;

@@ -115,7 +115,12 @@ void cut_flat(SolidAsset& asset, std::uint64_t seed, int threads) {
   asset.chunks = solid_masses(asset.partition, threads);
 }
 
-// Cuts the warped solid and moves what comes of it back. False if a chunk is turned inside out.
+bool all_face_outwards(const std::vector<MassProperties>& chunks) {
+  return std::ranges::all_of(chunks, [](const auto& chunk) { return chunk.volume > 0; });
+}
+
+// Cuts the warped solid and moves what comes of it back. False if a chunk is turned inside out or
+// crosses itself: straight triangles between moved points may, though the displacement does not.
 bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int threads) {
   const FineMesh fine = refined(asset.surface.mesh, warp.edge());
   TriMesh moved = fine.mesh;
@@ -140,7 +145,7 @@ bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int
       partition_solid(fine.mesh, fine.parents, cutter.complex, cut, threads, asset.stats);
   merge_outer_triangles(asset.surface.mesh, asset.partition);
   asset.chunks = solid_masses(asset.partition, threads);
-  return std::ranges::all_of(asset.chunks, [](const auto& chunk) { return chunk.volume > 0; });
+  return all_face_outwards(asset.chunks) && !has_crossings(asset.partition);
 }
 
 // The size of a typical chunk.
@@ -157,8 +162,9 @@ double chunk_size(const SolidModel& solid, double volume) {
   return std::cbrt(volume / std::max(count, 1.0));
 }
 
-// With as much of the roughness asked for as the solid bears: thin places, whose two sides the
-// fine mesh moves differently, may not bear all of it.
+// With as much of the roughness as the solid bears: thin places, whose two sides the fine mesh
+// moves differently, and cracks that graze the surface may not bear all of it. A crossing that
+// stays at the least share is left to the measurement of the result to tell.
 void cut_asset(SolidAsset& asset, std::uint64_t seed, int threads) {
   constexpr double kLeastShare = 0.05;
   const double chunk = chunk_size(asset.solid, asset.volume_expected);
@@ -170,9 +176,10 @@ void cut_asset(SolidAsset& asset, std::uint64_t seed, int threads) {
     } catch (const Error&) {
       if (share < kLeastShare) throw;
     }
-    if (share < kLeastShare)
-      throw Error(ErrorCode::geometry,
-                  "solid " + asset.solid.name + ": too thin for its roughness; valid is less");
+    if (share >= kLeastShare) continue;
+    if (all_face_outwards(asset.chunks)) return;
+    throw Error(ErrorCode::geometry,
+                "solid " + asset.solid.name + ": too thin for its roughness; valid is less");
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "fracture/solid_parts.hpp"
 #include "meshing/parallel.hpp"
+#include "meshing/self_crossing.hpp"
 
 namespace sunder {
 namespace {
@@ -26,6 +27,14 @@ struct Sum {
 };
 
 }  // namespace
+
+bool has_crossings(const SolidPartition& partition) {
+  for (std::uint32_t c = 0; c < partition.chunk_count(); ++c) {
+    const TriMesh mesh = chunk_triangles(partition, c);
+    if (crosses_itself(mesh, float_rounding(mesh))) return true;
+  }
+  return false;
+}
 
 std::vector<Bond> solid_bonds(const SolidPartition& partition) {
   std::vector<Sum> faces(partition.faces.size());

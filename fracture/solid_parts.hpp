@@ -18,6 +18,9 @@ SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_
 /// corners between them. Chunks stay as they are but for that.
 void merge_outer_triangles(const TriMesh& surface, SolidPartition& partition);
 
+/// Whether a chunk crosses itself by more than rounding to float32 may move its corners.
+bool has_crossings(const SolidPartition& partition);
+
 /// Mass properties of every chunk at density 1, and bonds of all pairs that share faces.
 std::vector<MassProperties> solid_masses(const SolidPartition& partition, int threads);
 std::vector<Bond> solid_bonds(const SolidPartition& partition);

@@ -25,12 +25,12 @@ double fade(double t) {
 }  // namespace
 
 SolidWarp::SolidWarp(const SolidModel& solid, double chunk, double share, std::uint64_t seed)
-    : roughness_(share * solid.roughness),
+    : roughness_(solid.roughness),
       size_(solid.roughness_size > 0 ? solid.roughness_size : chunk / 2),
       seed_(seed) {
   double left = kLipschitz;  // of the Lipschitz constant
   if (const auto* slices = std::get_if<SolidSlicesParams>(&solid.pattern)) {
-    amplitude_ = share * slices->amplitude;
+    amplitude_ = slices->amplitude;
     wavelength_ = slices->wavelength;
     waves_ = {slices->slices.x > 0 ? 1.0 : 0, slices->slices.y > 0 ? 1.0 : 0,
               slices->slices.z > 0 ? 1.0 : 0};
@@ -40,7 +40,8 @@ SolidWarp::SolidWarp(const SolidModel& solid, double chunk, double share, std::u
       amplitude_ = std::min(amplitude_, left / kWaveSlope * wavelength_);
     }
   }
-  roughness_ = std::min(roughness_, left / kNoiseSlope * size_);
+  roughness_ = share * std::min(roughness_, left / kNoiseSlope * size_);
+  amplitude_ *= share;
 }
 
 double SolidWarp::edge() const {

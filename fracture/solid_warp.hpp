@@ -15,7 +15,8 @@ namespace sunder {
 /// same (Lipschitz constant below 1, to which roughness and amplitude are cut down if need be).
 class SolidWarp {
  public:
-  /// `chunk`: size of a typical chunk, m; `share` of the roughness and amplitude asked for.
+  /// `chunk`: size of a typical chunk, m; `share` of the roughness and amplitude that
+  /// are asked for and one to one.
   SolidWarp(const SolidModel& solid, double chunk, double share, std::uint64_t seed);
   bool is_none() const { return roughness_ == 0 && amplitude_ == 0; }
   double roughness() const { return roughness_; }  ///< m, most

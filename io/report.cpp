@@ -90,6 +90,8 @@ std::string report_json(const Report& report) {
   json.add("nonmanifold_chunks", s.nonmanifold_chunks);
   json.add("inverted_chunks", s.inverted_chunks);
   json.add("overlapping_pairs", s.overlapping_pairs);
+  json.add("self_crossing_chunks", s.self_crossing_chunks);
+  json.add("crossing_surfaces", s.crossing_surfaces);
   json.add("unmatched_faces", s.unmatched_faces);
   json.add("slivers", s.slivers);
   json.add("slivers_merged", report.slivers_merged);

@@ -22,7 +22,8 @@ constexpr ReportKey kReportKeys[] = {
     {"version", "string", "Version of the program."},
     {"seed", "integer", "Seed of the random numbers."},
     {"sound", "boolean",
-     "True when no chunk is open, not manifold or inverted, none overlap, every inner face is "
+     "True when no chunk is open, not manifold or inverted, none overlap or cross itself, every "
+     "inner face is "
      "matched, and the volume is right to 1e-6 where the one expected is known."},
     {"chunks", "integer", "Chunks of all walls."},
     {"triangles", "integer", "Triangles of all chunks."},
@@ -38,6 +39,10 @@ constexpr ReportKey kReportKeys[] = {
     {"inverted_chunks", "integer", "Closed chunks whose volume is not above 0."},
     {"overlapping_pairs", "integer",
      "Pairs of chunks whose front faces overlap; of a solid, pairs with the same outer face."},
+    {"self_crossing_chunks", "integer",
+     "Chunks of solids that cross themselves by more than rounding to float32 moves corners."},
+    {"crossing_surfaces", "integer",
+     "Solids whose outer faces cross each other by more than that."},
     {"unmatched_faces", "integer", "Inner triangles without exactly one partner in another chunk."},
     {"slivers", "integer",
      "Chunks whose front is thinner than 1:50; of a solid, chunks with less than a thousandth of "

@@ -212,8 +212,8 @@ double TriangleTree::winding_number(Vec3 p) const {
   return angle / (4 * std::numbers::pi);
 }
 
-std::vector<std::array<std::uint32_t, 2>> TriangleTree::overlapping_boxes() const {
-  std::vector<std::array<std::uint32_t, 2>> pairs;
+bool TriangleTree::any_overlapping(
+    const std::function<bool(std::uint32_t, std::uint32_t)>& wanted) const {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> stack;
   if (!nodes_.empty()) stack.emplace_back(0, 0);
   while (!stack.empty()) {
@@ -231,10 +231,19 @@ std::vector<std::array<std::uint32_t, 2>> TriangleTree::overlapping_boxes() cons
     } else {
       for (std::uint32_t i = na.begin; i < na.end; ++i)
         for (std::uint32_t k = a == b ? i + 1 : nb.begin; k < nb.end; ++k)
-          if (boxes_[order_[i]].overlaps(boxes_[order_[k]]))
-            pairs.push_back({std::min(order_[i], order_[k]), std::max(order_[i], order_[k])});
+          if (boxes_[order_[i]].overlaps(boxes_[order_[k]]) && wanted(order_[i], order_[k]))
+            return true;
     }
   }
+  return false;
+}
+
+std::vector<std::array<std::uint32_t, 2>> TriangleTree::overlapping_boxes() const {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  any_overlapping([&](std::uint32_t a, std::uint32_t b) {
+    pairs.push_back({std::min(a, b), std::max(a, b)});
+    return false;
+  });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "meshing/tri_mesh.hpp"
@@ -43,6 +44,9 @@ class TriangleTree {
   /// surface. Far parts count as dipoles (Barill et al. 2018), which errs by some hundredths.
   double winding_number(Vec3 p) const;
 
+  /// Whether `wanted` holds for a pair of triangles whose boxes overlap; asked in no order that
+  /// tells anything, until it does.
+  bool any_overlapping(const std::function<bool(std::uint32_t, std::uint32_t)>& wanted) const;
   /// Pairs a < b of triangles whose boxes overlap, ascending.
   std::vector<std::array<std::uint32_t, 2>> overlapping_boxes() const;
   /// Triangles whose boxes the ray from p along +x touches, in no order.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "fracture/solid_parts.hpp"
 #include "fracture/solid_shapes.hpp"
 #include "fracture/solid_sound.hpp"
 #include "meshing/random.hpp"
@@ -86,6 +87,41 @@ TEST(Solid, RoughFacesAreSoundAndMatch) {
     const SolidAsset asset = fracture_solid(model, as_surface(shape.mesh), 2400, {});
     expect_sound(asset);
     EXPECT_GT(asset.stats.roughness, 0.004);
+  }
+}
+
+// The gear's needs half of what is one to one.
+TEST(Solid, TheRoughestFacesDoNotCross) {
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const double size = std::string_view(shape.name) == "vase" ? 0.2 : 1;
+    SolidModel model;
+    SolidVoronoiParams pattern;
+    pattern.count = 8;
+    model.pattern = pattern;
+    model.roughness = size;  // as much as there can be
+    const bool is_gear = std::string_view(shape.name) == "gear";
+    model.roughness_size = (is_gear ? 0.3 : 0.5) * size;
+    const SolidAsset asset = fracture_solid(model, as_surface(shape.mesh), 2400, {});
+    EXPECT_FALSE(has_crossings(asset.partition));
+    EXPECT_GT(asset.stats.roughness, 0.01 * size);
+    EXPECT_EQ(asset.stats.roughness < 0.13 * model.roughness_size, is_gear);
+  }
+}
+
+TEST(Solid, TheSteepestWavesDoNotCross) {
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const double size = std::string_view(shape.name) == "vase" ? 0.2 : 1;
+    SolidModel model;
+    SolidSlicesParams slices;
+    slices.slices = {1, 1, 1};
+    slices.amplitude = size;
+    slices.wavelength = 1.5 * size;
+    model.pattern = slices;
+    const SolidAsset asset = fracture_solid(model, as_surface(shape.mesh), 2400, {});
+    EXPECT_FALSE(has_crossings(asset.partition));
+    EXPECT_GT(asset.stats.amplitude, 0.02 * size);
   }
 }
 

@@ -56,12 +56,12 @@ Json sample_json() {
 }
 
 const SchemaValidator& validator() {
-  static const SchemaValidator schema(nlohmann::json::parse(json_schema("impact-report")));
+  static const SchemaValidator schema(json_schema("impact-report"));
   return schema;
 }
 
 bool schema_accepts(const Json& report) {
-  return validator().accepts(nlohmann::json::parse(report.dump()));
+  return validator().accepts(report.dump());
 }
 
 TEST(ImpactReport, EveryNumberStandsUnderItsKey) {
@@ -200,8 +200,8 @@ TEST(ImpactReportSchema, RefusesAWrongReport) {
 }
 
 TEST(ImpactReportSchema, TellsTheTwoKindsOfReportApart) {
-  const SchemaValidator other(nlohmann::json::parse(json_schema("report")));
-  EXPECT_FALSE(other.accepts(nlohmann::json::parse(sample_text(sample_result()))));
+  const SchemaValidator other(json_schema("report"));
+  EXPECT_FALSE(other.accepts(sample_text(sample_result())));
 }
 
 }  // namespace

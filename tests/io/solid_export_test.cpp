@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -253,18 +254,60 @@ TEST(SolidMeasure, AChunkTurnedInsideOutIsTold) {
   EXPECT_FALSE(s.is_sound());
 }
 
+// A closed box, all of it outside.
+SoupChunk box_chunk(Vec3 low, Vec3 size) {
+  SoupChunk chunk;
+  const TriMesh box = test::box(low, size);
+  for (const Vec3 p : box.vertices)
+    for (const double x : {p.x, p.y, p.z}) chunk.positions.push_back(static_cast<float>(x));
+  for (const auto& t : box.triangles) {
+    chunk.triangles.insert(chunk.triangles.end(), t.begin(), t.end());
+    chunk.inner.push_back(0);
+  }
+  return chunk;
+}
+
+Soundness measured(const std::vector<SoupChunk>& chunks) {
+  SoupWall soup;
+  soup.chunk_count = static_cast<std::uint32_t>(chunks.size());
+  soup.kind = SoupWall::Kind::solid;
+  soup.chunk = [&](std::uint32_t c) { return chunks[c]; };
+  return measure({soup});
+}
+
+TEST(SolidMeasure, AChunkWhoseCornerIsPushedThroughItsOtherSideCrossesItself) {
+  SoupChunk chunk = box_chunk({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(measured({chunk}).self_crossing_chunks, 0u);
+  std::ranges::copy(std::array{1.5f, 0.3f, 0.6f}, chunk.positions.begin());  // the corner at 0
+  const Soundness s = measured({chunk});
+  EXPECT_EQ(s.open_chunks + s.nonmanifold_chunks, 0u);
+  EXPECT_EQ(s.self_crossing_chunks, 1u);
+  EXPECT_EQ(s.crossing_surfaces, 1u);
+  EXPECT_FALSE(s.is_sound());
+}
+
+TEST(SolidMeasure, ChunksThatRunThroughEachOtherCrossInTheSurface) {
+  const SoupChunk one = box_chunk({0, 0, 0}, {1, 1, 1});
+  const Soundness apart = measured({one, box_chunk({1.5, 0, 0}, {1, 1, 1})});
+  EXPECT_TRUE(apart.is_sound());
+  const Soundness s = measured({one, box_chunk({0.75, 0.25, 0.25}, {1, 0.5, 0.5})});
+  EXPECT_EQ(s.self_crossing_chunks, 0u);
+  EXPECT_EQ(s.crossing_surfaces, 1u);
+  EXPECT_FALSE(s.is_sound());
+}
+
+TEST(SolidMeasure, AChunkInsideAnotherFacesTheWrongWay) {
+  const Soundness s =
+      measured({box_chunk({0, 0, 0}, {1, 1, 1}), box_chunk({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5})});
+  EXPECT_EQ(s.self_crossing_chunks, 0u);
+  EXPECT_EQ(s.crossing_surfaces, 1u);
+  EXPECT_FALSE(s.is_sound());
+}
+
 TEST(SolidMeasure, NeedlesAreSlivers) {
   Faulty faulty;
   const std::uint64_t before = faulty.measured().slivers;
-  SoupChunk needle;
-  const TriMesh box = test::box({50, 50, 50}, {1, 0.01, 0.01});
-  for (const Vec3 p : box.vertices)
-    for (const double x : {p.x, p.y, p.z}) needle.positions.push_back(static_cast<float>(x));
-  for (const auto& t : box.triangles) {
-    needle.triangles.insert(needle.triangles.end(), t.begin(), t.end());
-    needle.inner.push_back(0);
-  }
-  faulty.chunks.push_back(needle);
+  faulty.chunks.push_back(box_chunk({50, 50, 50}, {1, 0.01, 0.01}));
   EXPECT_EQ(faulty.measured().slivers, before + 1);
 }
 
