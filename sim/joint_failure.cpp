@@ -217,7 +217,7 @@ void CollapseRun::check_hits(std::vector<Failure>& failures) {
       const std::uint32_t part = struck_part(contact, ball);
       if (part == kNoPart) continue;
       disturbed_ = true;
-      note_hit(contact, s, last_dt_);
+      if (!panels_ || !panels_->is_wall(part)) note_hit(contact, s, last_dt_);
       if (!scene_.rules.hit_breaks) continue;
       for (const std::uint32_t j : joints_of_[part]) {
         if (!joints_[j].intact) continue;

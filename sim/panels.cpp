@@ -7,6 +7,7 @@
 
 #include "fracture/recover.hpp"
 #include "meshing/error.hpp"
+#include "meshing/random.hpp"
 #include "sim/part_pose.hpp"
 
 namespace sunder {
@@ -18,6 +19,8 @@ constexpr std::uint64_t kWallOrder = std::uint64_t{1} << 58;
 constexpr double kLeastMass = 1e-3;
 /// Panels are alike whose measures differ by less, m.
 constexpr double kAlike = 1e-9;
+/// Patterns of panels that are alike otherwise.
+constexpr std::uint64_t kVariants = 4;
 /// Slower contacts break nothing, m/s.
 constexpr double kLeastSpeed = 0.5;
 
@@ -174,12 +177,17 @@ void Panels::start() {
   }
 }
 
+/// So that a facade does not show one and the same pattern everywhere.
+std::uint64_t Panels::variant_of(const Panel& panel) const {
+  return random_bits(scene_.seed, panel.part, 0) % kVariants;
+}
+
 bool Panels::are_alike(const Panel& a, const Panel& b) const {
   const auto near = [](double x, double y) { return std::abs(x - y) < kAlike; };
   const PartSolid &p = host_.solids[a.part], &q = host_.solids[b.part];
   const auto& line = p.outline.outline;
   const auto& other = q.outline.outline;
-  if (a.pattern != b.pattern || given_asset(a) != nullptr || &material_of(a) != &material_of(b) ||
+  if (a.pattern != b.pattern || variant_of(a) != variant_of(b) || given_asset(a) != nullptr || &material_of(a) != &material_of(b) ||
       anchors_of(a) != anchors_of(b) || line.size() != other.size() ||
       !p.outline.openings.empty() || !q.outline.openings.empty() ||
       !near(p.half_length, q.half_length) || !near(p.mass / q.mass, 1))
@@ -208,7 +216,7 @@ Panels::Shape& Panels::shape_of(std::uint32_t w) {
   return shapes_.back();
 }
 
-/// Chunks of a panel; those of panels that are alike are the same.
+/// Chunks of a panel; panels that are alike have one of a few patterns.
 const ImpactWall& Panels::made(std::uint32_t w) {
   Panel& panel = panels_[w];
   if (panel.made) return *panel.made;

@@ -56,6 +56,10 @@ class Panels {
   void crack();
 
   void record() { walls_.record_islands(); }
+  /// Whether a part is a wall of chunks now, which takes note of its hits itself.
+  bool is_wall(std::uint32_t part) const {
+    return panel_of_part_[part] != kNoPart && panels_[panel_of_part_[part]].stands;
+  }
   bool any_awake() const { return any_awake_; }
   double baseline() const { return walls_.baseline() + shift_; }
   Vec3 impulse() const { return walls_.impulse(); }
@@ -91,6 +95,7 @@ class Panels {
     std::optional<PanelSense> sense{};
     double at_rest = 0;  ///< utilisation by weight alone
   };
+  std::uint64_t variant_of(const Panel& panel) const;
   bool are_alike(const Panel& a, const Panel& b) const;
   Shape& shape_of(std::uint32_t w);
   const ImpactWall& made(std::uint32_t w);
