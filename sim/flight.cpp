@@ -174,6 +174,9 @@ void WallRun::raise_colliders(double dt) {
   for (const Shot& shot : shots_)
     if (shot.body != kNoBody) near(shot.body);
   for (const std::uint32_t i : live_) near(islands_[i].body);
+  if (!host_.foreign || standing_.empty()) return;
+  for (const BodyId body : world_.awake())
+    if (owner(body).kind == Owner::Kind::foreign) near(body);
 }
 
 // Colliders of standing chunks in a world box; of all when nothing is to be skipped.

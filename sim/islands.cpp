@@ -111,7 +111,7 @@ void WallRun::keep_rest(std::uint32_t index, const Motion& motion) {
     if (islands_[index].graph->is_present(local)) locals.push_back(local);
   assert(!locals.empty());
   world_.remove(islands_[index].body);
-  own(islands_[index].body, {});
+  own(islands_[index].body, {Owner::Kind::gone, 0, 0});
   for (const std::uint32_t local : locals) members.push_back(islands_[index].chunks[local]);
   const std::vector<Bond> bonds = intact_bonds(islands_[index], locals);
   const std::uint32_t wall = islands_[index].wall, track = islands_[index].track;
@@ -133,7 +133,7 @@ void WallRun::lower_collider(std::uint32_t wall, std::uint32_t chunk) {
   ChunkState& state = walls_[wall].chunks[chunk];
   if (state.collider == kNoBody) return;
   world_.remove(state.collider);
-  own(state.collider, {});
+  own(state.collider, {Owner::Kind::gone, 0, 0});
   state.collider = kNoBody;
 }
 

@@ -258,8 +258,8 @@ void CollapseRun::break_joint(const Failure& failure) {
   state.broken = now_;
   posts_.break_joint(failure.joint);
   motion_->break_joint(failure.joint, failure.bears_on);
-  if (!disturbed_) ++result_.broken_at_rest;
-  const bool fails = failure.mode != "removed";
+  if (!disturbed_ && failure.mode != "panel") ++result_.broken_at_rest;
+  const bool fails = failure.mode != "removed" && failure.mode != "panel";
   if (fails && scene_.scenario.load_rate > 0 && result_.first_failure_load == 0) {
     double live = 0, area = 0;
     for (std::uint32_t s = 0; s < frame_.slabs.size(); ++s) {

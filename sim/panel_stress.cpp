@@ -35,12 +35,17 @@ void PanelStress::end_step(double dt, double load_time, double max_error) {
   for (Touch& touch : touches_) {
     if (touch.size > 0) touch.point = (1 / touch.size) * touch.weighted;
     const Vec3 force = touch.force + share * ((1 / dt) * touch.impulse - touch.force);
-    is_stale_ |= length(force - touch.force) > max_error * std::max(length(touch.force), kNoForce);
+    const double known = std::max(length(touch.settled), kNoForce);
+    is_stale_ |= length(force - touch.settled) > max_error * known;
     touch.force = force;
     touch.impulse = touch.weighted = {};
     touch.size = 0;
   }
-  std::erase_if(touches_, [](const Touch& touch) { return length(touch.force) < kNoForce; });
+  std::erase_if(touches_, [&](const Touch& touch) {
+    const bool is_over = length(touch.force) < kNoForce;
+    is_stale_ |= is_over && length(touch.settled) >= kNoForce;
+    return is_over;
+  });
 }
 
 void PanelStress::follow(const Island& island) {
@@ -76,7 +81,10 @@ bool PanelStress::is_stale(const PanelFreedoms& corners, double max_error) const
 
 std::vector<BrokenBond> PanelStress::settle(const PanelFreedoms& corners) {
   std::vector<ChunkForce> forces;
-  for (const Touch& touch : touches_) forces.push_back({touch.chunk, touch.point, touch.force});
+  for (Touch& touch : touches_) {
+    touch.settled = touch.force;
+    forces.push_back({touch.chunk, touch.point, touch.force});
+  }
   network_.set_contacts(forces);
   const std::vector<BrokenBond> broken = network_.cascade(moved(corners));
   for (const BrokenBond& bond : broken) intact_[bond.bond] = 0;

@@ -38,6 +38,7 @@ class PanelStress {
     Vec3 impulse{}, weighted{};
     double size = 0;
     Vec3 force{}, point{};
+    Vec3 settled{};  ///< the force at the last settle()
   };
   PanelFreedoms moved(const PanelFreedoms& corners) const;
 

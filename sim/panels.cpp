@@ -187,9 +187,9 @@ bool Panels::are_alike(const Panel& a, const Panel& b) const {
   const PartSolid &p = host_.solids[a.part], &q = host_.solids[b.part];
   const auto& line = p.outline.outline;
   const auto& other = q.outline.outline;
-  if (a.pattern != b.pattern || variant_of(a) != variant_of(b) || given_asset(a) != nullptr || &material_of(a) != &material_of(b) ||
-      anchors_of(a) != anchors_of(b) || line.size() != other.size() ||
-      !p.outline.openings.empty() || !q.outline.openings.empty() ||
+  if (a.pattern != b.pattern || variant_of(a) != variant_of(b) || given_asset(a) != nullptr ||
+      &material_of(a) != &material_of(b) || anchors_of(a) != anchors_of(b) ||
+      line.size() != other.size() || !p.outline.openings.empty() || !q.outline.openings.empty() ||
       !near(p.half_length, q.half_length) || !near(p.mass / q.mass, 1))
     return false;
   for (std::size_t i = 0; i < line.size(); ++i)
@@ -313,6 +313,8 @@ void Panels::stand_up(std::uint32_t w) {
   walls_.stand(w, made(w));
   walls_.stand_for(old, w);
   panel.present = present(w);
+  // Of a file whose chunks do not all hang on the frame: the network has other bonds.
+  if (walls_.standing(w).chunks.size() != made(w).asset.chunks.size()) panel.stress.reset();
   if (!panel.stress) make_stress(w);
 }
 
@@ -335,7 +337,7 @@ std::uint32_t Panels::present(std::uint32_t w) const {
 }
 
 /// A panel that has lost its hold: a body of the chunks that are left, as the part moves.
-void Panels::come_loose(std::uint32_t w, BodyId struck) {
+void Panels::come_loose(std::uint32_t w, BodyId struck, std::uint32_t prism) {
   Panel& panel = panels_[w];
   host_.break_off(panel.part);
   const double kinetic = host_.world.kinetic_energy(), potential = host_.world.potential_energy();
@@ -348,7 +350,7 @@ void Panels::come_loose(std::uint32_t w, BodyId struck) {
     walls_.let_go(w, motion, track);
   } else {
     walls_.set_free(w, made(w), motion, track);
-    if (struck != kNoBody) walls_.rename(struck, w);
+    if (struck != kNoBody) walls_.rename(struck, prism, w);
   }
   panel.stands = false;
   panel.stress.reset();
@@ -365,16 +367,31 @@ bool Panels::is_hard(const Contact& contact, const Panel& panel) const {
          material_of(panel).fracture_energy * thickness * thickness;
 }
 
-/// A panel in one piece that something hit.
-void Panels::meet(BodyId body, std::uint32_t prism, const Contact& contact) {
-  const std::uint32_t part = host_.motion.part_of(body, prism);
-  if (part == kNoPart || panel_of_part_[part] == kNoPart) return;
-  const std::uint32_t w = panel_of_part_[part];
-  if (!walls_.is_waiting(w) || !is_hard(contact, panels_[w])) return;
-  if (host_.motion.stands(part)) {
-    stand_up(w);
-  } else {
-    come_loose(w, body);
+/// Panels in one piece that something hit. Once one of a loose piece has left it, the world knows
+/// the others by other bodies.
+void Panels::meet_contacts() {
+  struct Hit {
+    std::uint32_t wall = 0, prism = 0;
+    BodyId body = kNoBody;
+  };
+  std::vector<Hit> hits;
+  for (const Contact& contact : host_.world.contacts()) {
+    if (contact.approach < kLeastSpeed) continue;
+    for (const auto& [body, prism] :
+         {std::pair{contact.a, contact.part_a}, std::pair{contact.b, contact.part_b}}) {
+      const std::uint32_t part = host_.motion.part_of(body, prism);
+      if (part == kNoPart || panel_of_part_[part] == kNoPart) continue;
+      const std::uint32_t w = panel_of_part_[part];
+      if (walls_.is_waiting(w) && is_hard(contact, panels_[w])) hits.push_back({w, prism, body});
+    }
+  }
+  for (const Hit& hit : hits) {
+    if (!walls_.is_waiting(hit.wall)) continue;
+    if (host_.motion.stands(panels_[hit.wall].part)) {
+      stand_up(hit.wall);
+    } else {
+      come_loose(hit.wall, hit.body, hit.prism);
+    }
   }
 }
 
@@ -445,7 +462,7 @@ void Panels::crack() {
     ++solves_;
     const std::vector<BrokenBond> broken = panel.stress->settle(corners);
     if (!broken.empty() && !panel.stands) stand_up(w);
-    if (!broken.empty()) break_bonds(w, broken);
+    if (!broken.empty() && panel.stress) break_bonds(w, broken);
   }
 }
 
@@ -456,11 +473,7 @@ void Panels::break_bonds(std::uint32_t w, std::span<const BrokenBond> broken) {
 }
 
 void Panels::after_step(double now, double dt) {
-  for (const Contact& contact : host_.world.contacts()) {
-    if (contact.approach < kLeastSpeed) continue;
-    meet(contact.a, contact.part_a, contact);
-    meet(contact.b, contact.part_b, contact);
-  }
+  meet_contacts();
   note_touches(dt);
   walls_.after_step(now);
 }
@@ -523,11 +536,12 @@ double Panels::standing_mass(std::uint32_t w) const {
 
 ImpactResult Panels::finish(Recording& recording) {
   std::vector<RecordedWall> walls = walls_.finish();
+  std::vector<std::uint32_t> place(panels_.size(), kNoTrack);
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     const Panel& panel = panels_[w];
     if (walls_.is_waiting(w)) continue;
     RecordedPart& part = recording.parts[panel.part];
-    part.wall = static_cast<std::uint32_t>(recording.walls.size());
+    part.wall = place[w] = static_cast<std::uint32_t>(recording.walls.size());
     part.name += "_whole";
     part.removed = 0;
     recording.walls.push_back(std::move(walls[w]));
@@ -535,6 +549,7 @@ ImpactResult Panels::finish(Recording& recording) {
     // From the part's frame to the wall's.
     for (Pose& pose : recording.tracks[part.track].poses) pose = pose * Pose{origin_of(panel), {}};
   }
+  for (BreakEvent& event : recording.events) event.wall = place[event.wall];
   return std::move(result_);
 }
 

@@ -123,8 +123,8 @@ class Panels {
   void break_bonds(std::uint32_t w, std::span<const BrokenBond> broken);
   std::size_t side_near(const Panel& panel, Vec2 point) const;
   void cut_anchors(std::uint32_t w);
-  void come_loose(std::uint32_t w, BodyId struck);
-  void meet(BodyId body, std::uint32_t prism, const Contact& contact);
+  void come_loose(std::uint32_t w, BodyId struck, std::uint32_t prism = 0);
+  void meet_contacts();
   std::uint32_t present(std::uint32_t w) const;
   double standing_mass(std::uint32_t w) const;
 

@@ -392,9 +392,9 @@ void WallRun::meet_contacts() {
   std::vector<Contact> renamed;
   if (!renamed_.empty()) renamed.assign(contacts.begin(), contacts.end()), contacts = renamed;
   for (Contact& contact : renamed)
-    for (const auto& [old, now] : renamed_) {
-      if (contact.a == old) contact.a = now;
-      if (contact.b == old) contact.b = now;
+    for (const Renamed& body : renamed_) {
+      if (contact.a == body.old && contact.part_a == body.prism) contact.a = body.now;
+      if (contact.b == body.old && contact.part_b == body.prism) contact.b = body.now;
     }
   for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
     Meeting m;
@@ -439,7 +439,8 @@ bool WallRun::is_gentle(const Meeting& m) const {
 /// `struck` is what may break; the normal points from it to the other.
 void WallRun::meet(BodyId struck, BodyId striker, Vec3 normal, Meeting m) {
   const Owner what = owner(struck);
-  if (owner(striker).kind == Owner::Kind::none) return;  // broke a moment ago
+  const Owner::Kind kind = owner(striker).kind;
+  if (kind == Owner::Kind::none || kind == Owner::Kind::gone) return;  // broke a moment ago
   m.striker = striker;
   m.normal = normal;
   if (what.kind == Owner::Kind::collider) {
@@ -507,7 +508,7 @@ void WallRun::split_chunk(const Meeting& m, double loss) {
   const Motion motion = motion_of(islands_[m.island]);
   const std::uint32_t track = islands_[m.island].track;
   world_.remove(islands_[m.island].body);
-  own(islands_[m.island].body, {});
+  own(islands_[m.island].body, {Owner::Kind::gone, 0, 0});
   std::erase(live_, m.island);
   islands_[m.island].body = kNoBody;
   for (const std::uint32_t part : parts) {

@@ -123,6 +123,7 @@ void WallRun::move_main(std::uint32_t w, const Motion& motion, std::uint32_t tra
 void WallRun::stand(std::uint32_t w, const ImpactWall& what) {
   walls_[w] = WallState(what);
   move_loose(w, add_wall(w, false), {walls_[w].standing, {}, {}, {}}, kNoTrack);
+  if (!params_.skip) raise_colliders_near(w, {}, {});
 }
 
 void WallRun::set_free(std::uint32_t w, const ImpactWall& what, const Motion& motion,

@@ -91,7 +91,9 @@ class WallRun {
   void stand_for(BodyId body, std::uint32_t wall) { own(body, {Owner::Kind::collider, wall, 0}); }
 
   /// Contacts of this body in the last step are those of a free wall's: it has taken its place.
-  void rename(BodyId body, std::uint32_t wall) { renamed_.emplace_back(body, islands_[wall].body); }
+  void rename(BodyId body, std::uint32_t prism, std::uint32_t wall) {
+    renamed_.push_back({body, prism, islands_[wall].body});
+  }
 
   /// Poses of what came loose, then of the projectiles that were launched here, at the end of a
   /// step.
@@ -105,7 +107,7 @@ class WallRun {
  private:
   /// What a body of the world is.
   struct Owner {
-    enum class Kind : std::uint8_t { none, ground, collider, island, projectile, foreign };
+    enum class Kind : std::uint8_t { none, ground, collider, island, projectile, foreign, gone };
     Kind kind = Kind::none;
     std::uint32_t index = 0;  ///< wall (collider), island, projectile
     std::uint32_t chunk = 0;  ///< of a collider
@@ -248,7 +250,12 @@ class WallRun {
   double baseline_ = 0;       ///< potential energy of all bodies where they started, J
   Vec3 impulse_;              ///< that walls gave beside the world's contacts, N s
   double unspent_ = 0;        ///< energy that contacts took in the last substep, J, less cracks'
-  std::vector<std::pair<BodyId, BodyId>> renamed_;  ///< since the last step
+  struct Renamed {
+    BodyId old = kNoBody;
+    std::uint32_t prism = 0;
+    BodyId now = kNoBody;
+  };
+  std::vector<Renamed> renamed_;      ///< since the last step
   std::vector<std::uint32_t> woven_;  ///< chunks inside the damage polygon of the hit at hand
 };
 
