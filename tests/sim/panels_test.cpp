@@ -470,6 +470,33 @@ TEST(Panels, BallThatStartsInsideAPanelIsRefused) {
   EXPECT_THROW(simulate_collapse(scene), Error);
 }
 
+TEST(Panels, LoosePartsLieOnAPanelThatStandsAsChunks) {
+  // The blow makes the slab chunks; nothing breaks, so the upper storey comes to rest on it.
+  CollapseScene scene = slab_on_slab();
+  scene.frame.slabs[1].pattern = kNoPart;
+  for (Material& m : scene.frame.materials) {
+    m.tensile_strength *= 1e4;
+    m.compressive_strength *= 1e4;
+  }
+  for (FrameJoint& joint : scene.frame.joints)
+    if (joint.a < scene.frame.slab_part(1)) {
+      joint.strength.force = 1e6 * joint.strength.force;
+      joint.strength.torque = 1e6 * joint.strength.torque;
+    }
+  scene.simulation.duration = 2;
+  const CollapseResult r = simulate_collapse(scene);
+  ASSERT_NE(wall_named(r, "slab_0_0_0"), nullptr) << "it stands as chunks";
+  // Through the slab they would lie on the beams below, which are 0.3 m high.
+  const double on_slab = 3.5 + 0.3 + scene.frame.slabs[0].thickness;
+  for (std::uint32_t m = 0; m < scene.frame.members.size(); ++m) {
+    const RecordedPart& part = r.recording.parts[m];
+    if (!part.name.starts_with("beam") || !part.name.ends_with("_1")) continue;
+    const auto last = static_cast<std::uint32_t>(r.recording.times.size() - 1);
+    EXPECT_GT(pose_at(r.recording, part.track, last, part.standing).position.y, on_slab - 0.05)
+        << part.name;
+  }
+}
+
 TEST(Panels, BallMayComeLaterAndARunMayBeShorterThanAStep) {
   CollapseScene scene = shot_through_wall();
   scene.projectiles[0].time = 0.1;
