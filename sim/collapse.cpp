@@ -275,7 +275,7 @@ void CollapseRun::step_once(double end) {
 
 /// Never much shorter than the others: a joint's load is its impulse by the time, and iterations
 /// start from the last impulses.
-/// A step is divided only where a projectile starts: the world follows fast ones within a step.
+/// A step is divided where a projectile starts; for panels besides, see step_once.
 double CollapseRun::next_substep(double left) const {
   double dt = left;
   for (std::size_t i = 0; i < shots_.size(); ++i) {

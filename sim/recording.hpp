@@ -60,7 +60,8 @@ struct RecordedPart {
   std::uint32_t track = kNoTrack;
   bool has_ends = false;  ///< a member: its ends show the stress of its joints
   double removed = std::numeric_limits<double>::infinity();  ///< s: taken away, not there any more
-  std::uint32_t wall = kNoTrack;  ///< of the recording's walls: it broke and is shown by its chunks from the start
+  /// Of the recording's walls: it broke and is shown by its chunks from the start.
+  std::uint32_t wall = kNoTrack;
 };
 
 /// A joint between parts. `end`: 0 at z = -half_length of the part, 1 at the other end, 2 in
