@@ -36,7 +36,7 @@ struct Given {
   WallOptions wall;
   SolidOptions solid;
   PatternOptions pattern;
-  std::string name, material, seed, threads, at;
+  std::string name, material, seed, threads, at, max_error;
   std::map<std::string, std::string> hulls;  // by key
   bool physics = false;
 };
@@ -271,6 +271,9 @@ CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
 
 void add_run_options(CLI::App& verb, Options& options, Given& given, const char* suffixes) {
   add_scene_options(verb, options, given, suffixes);
+  verb.add_option("--max-error", given.max_error,
+                  "Relative error asked for: chooses step, iterations and solver where the scene "
+                  "leaves them open, the cheapest that were measured to meet it");
   verb.add_flag("--no-skip", options.no_skip,
                 "Do the work that the scene does not need too; the result is the same")
       ->disable_flag_override();
@@ -374,6 +377,8 @@ void read_numbers(Options& options, const Given& given) {
   if (!given.threads.empty())
     options.threads = static_cast<int>(parse_whole("--threads", given.threads, 1024));
   if (!given.at.empty()) options.at = parse_seconds("--at", given.at);
+  if (!given.max_error.empty())
+    options.overrides.push_back("simulation.max_error=" + given.max_error);
 }
 
 // False when help or the version was asked for and is printed.

@@ -82,17 +82,21 @@ int run_collapse(const Options& options) {
   watch.lap("read");
   CollapseResult result = simulate(collapse, options);
   watch.lap("simulate");
-  const std::vector<std::string> own = shortcomings(scene);
+  const RunSettings settings = run_settings(scene, "collapse");
+  std::vector<std::string> own = shortcomings(scene);
+  if (std::string warning = shortfall(scene, settings); !warning.empty())
+    own.push_back(std::move(warning));
   result.warnings.insert(result.warnings.begin(), own.begin(), own.end());
   write_recording(result.recording, collapse.simulation, options);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  write_report(options, collapse_report_json(
-                            {SUNDER_VERSION, collapse, result, took.count(), watch.steps()}));
+  write_report(options, collapse_report_json({SUNDER_VERSION, collapse, result, took.count(),
+                                              watch.steps(), settings}));
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
   if (options.quiet) return kExitOk;
   print_collapse(collapse, result);
+  print_settings(settings);
   print_end(options, scene, "collapse", {}, watch);
   return kExitOk;
 }

@@ -30,14 +30,15 @@ void print_projectile(const ProjectileOutcome& p) {
   }
 }
 
-void print_summary(const ImpactResult& result, const Scene& scene, const Options& options,
-                   const Stopwatch& watch) {
+void print_summary(const ImpactResult& result, const Scene& scene, const RunSettings& settings,
+                   const Options& options, const Stopwatch& watch) {
   for (const ProjectileOutcome& p : result.projectiles) print_projectile(p);
   std::fprintf(stderr, "%llu of %llu chunks freed, %llu bonds broken, %llu split again, %.4g kg\n",
                as_count(result.chunks_freed), as_count(result.chunks),
                as_count(result.broken_bonds), as_count(result.chunks_split), result.freed_mass);
   print_ledger(result.energy_in, result.energy);
   print_steps(result, scene.seed);
+  print_settings(settings);
   print_end(options, scene, "impact", {"solids", "building", "scenario"}, watch);
 }
 
@@ -70,7 +71,10 @@ int run_impact(const Options& options) {
     return impact_scene(scene, threads, [&](double done) { bar.update(done); });
   }();
   watch.lap("fracture");
-  const ImpactResult result = simulate(impact, options);
+  ImpactResult result = simulate(impact, options);
+  const RunSettings settings = run_settings(scene, "impact");
+  if (const std::string warning = shortfall(scene, settings); !warning.empty())
+    result.warnings.push_back(warning);
   watch.lap("simulate");
   const SimulationParams& simulation = scene.simulation;
   const RecordingParams recording{.has_ground = simulation.ground,
@@ -80,12 +84,12 @@ int run_impact(const Options& options) {
     if (path.extension() != ".json") export_recording(result.recording, path, recording);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const std::string text =
-      impact_report_json({SUNDER_VERSION, scene.seed, result, took.count(), watch.steps()});
+  const std::string text = impact_report_json(
+      {SUNDER_VERSION, scene.seed, result, took.count(), watch.steps(), settings});
   write_report(options, text);
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
-  if (!options.quiet) print_summary(result, scene, options, watch);
+  if (!options.quiet) print_summary(result, scene, settings, options, watch);
   return kExitOk;
 }
 

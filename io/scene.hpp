@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/error_front.hpp"
 #include "fracture/hulls.hpp"
 #include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
@@ -32,6 +33,7 @@ struct Scene {
   Scenario scenario;
   std::filesystem::path ground_motion_file;  ///< that the scenario names; empty: none
   SimulationParams simulation;
+  std::optional<ErrorChoice> error_choice;  ///< of a scene that gives max_error
   HullParams hulls;
   std::vector<std::string> keys;  ///< top-level keys that the file gives, in its order
 };

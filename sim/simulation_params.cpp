@@ -24,7 +24,8 @@ std::span<const Field<SimulationParams>> fields() {
       {"max_error",
        &P::max_error,
        "",
-       "Relative error asked for; decides how far steps are divided.",
+       "Relative error asked for: given, it chooses step, iterations and solver where they are left "
+       "out, by what was measured; it decides how far steps are divided.",
        {0, 1, true}},
       {"gravity", &P::gravity, "m/s²", "Downwards, along -y.", {0, 1000}},
       {"ground", &P::ground, "", "Whether there is a floor to fall on."},
