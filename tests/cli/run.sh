@@ -337,6 +337,7 @@ buildings_run() {  # each for the first moments, by its solver: it stands, and i
     grep -q '"building"' "$scene" || continue
     expect_exit 0 "$sunder" collapse "$scene" --set simulation.duration=0.4 -o b.glb -o b.svg \
       --report b.json --history b.csv
+    expect_exit 0 "$sunder" check b.glb
     for key in '"broken_at_rest": 0,' '"broken_by": {' '"weight": ' '"sag": {' '"hash": "' \
                '"warnings": []'; do
       expect_text b.json "$key"

@@ -148,7 +148,7 @@ Json solid_pattern(Dice& dice, double scale, double away) {
 
 Scene scene_of(Dice& dice, const Model& model, bool repair) {
   const double scale = dice.log_between(1e-3, 1e3);
-  const double away = dice.pick({0.0, 1.0, 100.0});
+  const double away = dice.pick({0.0, 1.0, 20.0});
   Json solid = {{"file", kModelFile}, {"pattern", solid_pattern(dice, scale, away)}};
   if (repair) solid["repair"] = true;
   if (!repair && dice.chance(0.2)) solid["roughness"] = scale * 0.01;

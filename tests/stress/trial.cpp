@@ -80,7 +80,7 @@ void judge_same(Run& run, const Json& report, const std::vector<std::string>& mo
     run.fail(std::string("another result ") + what);
 }
 
-void judge_file(Run& run, const char* name, bool as_asset) {
+void judge_file(Run& run) {
   const fs::path glb = run.file(".glb"), out = run.file("-check.json");
   const Outcome outcome =
       run_command({run.bench.program, "check", glb, "--quiet", "--report", out}, run.stem, {});
@@ -91,8 +91,8 @@ void judge_file(Run& run, const char* name, bool as_asset) {
     run.fail("its file cannot be checked: " + outcome.talk);
     return;
   }
-  run.measure(name, number(report, "open_chunks"), 0);
-  if (as_asset && outcome.exit_code != 0) run.fail("its file is not sound: " + outcome.talk);
+  run.measure("open_chunks of the file", number(report, "open_chunks"), 0);
+  if (outcome.exit_code != 0) run.fail("its file is not sound: " + outcome.talk);
 }
 
 void judge_asset(Run& run, const Json& report, bool other_threads) {
@@ -101,7 +101,7 @@ void judge_asset(Run& run, const Json& report, bool other_threads) {
     run.measure(key, number(report, key), 0);
   run.measure("volume_error", number(report, "volume_error"), 1e-6);
   if (report["sound"] != true) run.fail("it is not sound");
-  judge_file(run, "open_chunks of the file", true);
+  judge_file(run);
   if (other_threads) judge_same(run, report, {"--threads", "1"}, "with one thread");
 }
 
@@ -131,7 +131,7 @@ void judge_run(Run& run, const Json& report, bool again) {
               (number(energy, "kinetic") - (in - potential - strain)) / scale, 1e-2);
   run.trial.measures.push_back({"penetration, m (not judged)", number(report, "penetration_max"),
                                 std::numeric_limits<double>::infinity()});
-  judge_file(run, "open_chunks of the file", false);
+  judge_file(run);
   if (!again) return;
   judge_same(run, report, {"--threads", "1"}, "with one thread");
   judge_skipping(run, report);
