@@ -79,7 +79,7 @@ std::span<const Field<SimulationParams>> fields() {
        "s",
        "For hybrid: Rayleigh damping, its share of the stiffness.",
        {0, 1}},
-      {"history_step", &P::history_step, "s", "Between samples of the joints' loads.", {1e-4, 10}},
+      {"history_step", &P::history_step, "s", "Between samples of the joints' loads and of the energies.", {1e-4, 10}},
   };
   return table;
 }
