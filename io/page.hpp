@@ -24,8 +24,9 @@ std::string_view page_template();
 void require_page(std::string_view page = page_template());
 
 /// A 3D page of the models in one file that loads nothing from elsewhere: their bytes are in it as
-/// base64 of raw deflate. Same models, same bytes. Throws Error{output} unless there is a page, or
-/// if a model is larger than browsers take (512 MiB when packed).
+/// base64 of raw deflate, words byte by byte (see in_planes). Same models, same bytes. Throws
+/// Error{output} unless there is a page, or if a model is larger than browsers take (512 MiB when
+/// packed).
 std::string page_text(std::span<const PageModel> models, std::string_view page = page_template());
 
 /// Writes the page, whole or not at all.

@@ -8,7 +8,7 @@ const linear = (text) => scratch.set(text).toArray();
 
 // Perceptually even: dark blue, green, yellow (after viridis, five stops).
 const kRamp = ["#3b2a6b", "#2f6690", "#1f9e89", "#7cc65a", "#fde047"];
-const kHeat = ["#3b4a66", "#3f7fb5", "#f2c14e", "#ee7c2b", "#d7263d"];
+const kHeat = ["#707d92", "#3f8fc9", "#f2c14e", "#ee7c2b", "#d7263d"];
 const linearRamp = (stops) => stops.map(linear);
 const ramps = { size: linearRamp(kRamp), speed: linearRamp(kHeat) };
 
@@ -92,7 +92,7 @@ export class Colours {
       if (id === "material") write(part, out, 0);
       else if (id === "chunk") write(part, isBall ? kBall : hueOf(part.index), 1);
       else if (id === "size") write(part, isBall ? kBall : this.size(part, out), 1);
-      else if (id === "utilisation") write(part, kGrey, part.kind === "member" ? 0 : 0.75);
+      else if (id === "utilisation") write(part, kGrey, 0.8);
       else write(part, this.speed(part, out), 1);
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the program put into the page: a list of files, each as base64 of its raw deflate.
 
-/** The page's list: [{name, files: [{id, size}], report}]. */
+/** The page's list: [{name, files: [{id, size, words}], report}]. */
 export function embeddedList() {
   const element = document.getElementById("sunder-list");
   return element ? JSON.parse(element.textContent) : [];
@@ -15,8 +15,22 @@ function decodeBase64(text) {
   return bytes;
 }
 
+// From `start` on the first bytes of all words of four come first, then the second, third, fourth:
+// so they pack better. What is left of the last word follows as it is.
+function inWords(bytes, start) {
+  const count = Math.floor((bytes.length - start) / 4);
+  const result = new Uint8Array(bytes.length);
+  result.set(bytes.subarray(0, start));
+  result.set(bytes.subarray(start + 4 * count), start + 4 * count);
+  for (let k = 0; k < 4; ++k) {
+    const plane = bytes.subarray(start + k * count, start + (k + 1) * count);
+    for (let i = 0, to = start + k; i < count; ++i, to += 4) result[to] = plane[i];
+  }
+  return result;
+}
+
 /** The bytes of one embedded file. */
-export async function embeddedBytes({ id, size }) {
+export async function embeddedBytes({ id, size, words }) {
   if (!globalThis.DecompressionStream)
     throw new Error("this browser is too old to unpack the file: use one of 2023 or later");
   const packed = decodeBase64(document.getElementById(id).textContent);
@@ -32,5 +46,5 @@ export async function embeddedBytes({ id, size }) {
     at += part.value.length;
   }
   if (at !== size) throw new Error("the page is not complete");
-  return bytes;
+  return inWords(bytes, words);
 }

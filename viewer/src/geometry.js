@@ -55,6 +55,7 @@ export class Geometry {
   constructor(gltf, parts) {
     this.boxes = [];
     this.radii = new Float32Array(parts.length);
+    this.widths = new Float32Array(parts.length);
     this.borders = new Map();
     const { materials = [], images = [], textures = [] } = gltf.json;
     const imageOf = (m) => textures[m.pbrMetallicRoughness?.baseColorTexture?.index]?.source;
@@ -135,6 +136,7 @@ export class Geometry {
         if (positions[i + k] > box[3 + k]) box[3 + k] = positions[i + k];
       }
     }
+    this.widths[index] = Math.min(box[3] - box[0], box[4] - box[1], box[5] - box[2]);
     this.radii[index] = 0.5 * Math.hypot(box[3] - box[0], box[4] - box[1], box[5] - box[2]);
   }
 
@@ -160,7 +162,8 @@ export class Geometry {
       let edges = this.borders.get(piece.listKey);
       if (!edges) this.borders.set(piece.listKey, (edges = borderEdges(piece.indices)));
       for (let e = 0; e < edges.length; e += 2) {
-        if (isForward(piece.positions, edges[e], edges[e + 1])) lines.push(piece.first + edges[e], piece.first + edges[e + 1]);
+        const a = edges[e], b = edges[e + 1];
+        if (isForward(piece.positions, a, b)) lines.push(piece.first + a, piece.first + b);
       }
     }
   }

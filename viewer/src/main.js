@@ -126,6 +126,7 @@ class Page {
     this.select(null);
     this.resized();
     this.world.frame();
+    this.isDirty = true;
   }
 
   countsText() {
@@ -246,11 +247,11 @@ class Page {
     this.isDirty = true;
   }
 
-  click(event) {
+  async click(event) {
     if (!this.model) return;
     const box = $("view").getBoundingClientRect();
     const x = event.clientX - box.left, y = event.clientY - box.top;
-    this.select(this.jointAt(x, y) ?? this.world.picker.at(x, y));
+    this.select(this.jointAt(x, y) ?? (await this.world.picker.at(x, y)));
   }
 
   jointAt(x, y) {
@@ -303,13 +304,15 @@ class Page {
 
   resized() {
     const { clientWidth: width, clientHeight: height } = $("stage");
-    if (width === 0 || height === 0) return;
+    const size = `${width} ${height} ${devicePixelRatio}`;
+    if (width === 0 || height === 0 || size === this.size) return;
+    this.size = size;
     const aspect = this.world.camera.aspect;
     this.world.resize(width, height);
     if (this.model && Math.abs(aspect - width / height) > 0.3) this.world.frame();
     for (const chart of this.charts) chart.paint();
     this.markEvents();
-    if (this.model) this.draw();  // in the same frame, or it would be blank for one
+    if (document.documentElement.dataset.ready) this.draw();  // at once, or it would be blank for a frame
   }
 
   draw() {

@@ -12,7 +12,7 @@ export class Picker {
   }
 
   /** The part at a place in CSS pixels from the canvas's corner; null: none. */
-  at(x, y) {
+  async at(x, y) {
     const { renderer, scene, camera, model } = this.world;
     const { clientWidth: width, clientHeight: height } = renderer.domElement;
     const background = scene.background, auto = renderer.shadowMap.needsUpdate;
@@ -26,7 +26,7 @@ export class Picker {
     renderer.setClearColor(0, 0);
     renderer.clear();
     renderer.render(scene, camera);
-    renderer.readRenderTargetPixels(this.target, 0, 0, 1, 1, this.pixel);
+    const reading = renderer.readRenderTargetPixelsAsync(this.target, 0, 0, 1, 1, this.pixel);
     renderer.setRenderTarget(null);
     renderer.setClearColor(colour, alpha);
     renderer.shadowMap.needsUpdate = auto;
@@ -34,7 +34,7 @@ export class Picker {
     scene.background = background;
     camera.layers.set(0);
     camera.clearViewOffset();
-    const [r, g, b] = this.pixel;
+    const [r, g, b] = await reading;
     return model.parts[r + 256 * g + 65536 * b - 1] ?? null;
   }
 }

@@ -32,7 +32,7 @@ vec4 lightOf(vec3 load) {
   float most = max(load.x, load.y);
   if (most <= 0.0) return vec4(0.0);
   vec3 pure = load.x > load.y ? vec3(0.807, 0.013, 0.008) : vec3(0.0116, 0.4342, 0.0343);
-  return vec4(mix(pure, vec3(1.0, 0.6308, 0.0), min(load.x, load.y) / most), most);
+  return vec4(mix(pure, vec3(1.0, 0.6308, 0.0), min(load.x, load.y) / most), pow(most, 0.7));
 }
 `;
 
@@ -122,7 +122,7 @@ void main() {
   vec4 form = lookTexel(1);
   float size = lookTexel(2).x * pixels / max(gl_Position.w, 1e-6);
   bool moved = motionTexel(2).w > 0.5;
-  strength = max(moved ? 0.75 : form.w, form.z) * smoothstep(2.0, 22.0, size);
+  strength = max(moved ? 0.75 : form.w, form.z) * smoothstep(1.5, 14.0, size);
 }`,
     fragmentShader: `uniform vec3 ink;
 in float strength;

@@ -4,7 +4,7 @@
 import {
   BufferAttribute, BufferGeometry, Color, DataTexture, DirectionalLight, DoubleSide, FloatType, Fog, FrontSide,
   HemisphereLight, LineSegments, Mesh, NearestFilter, PCFShadowMap, PerspectiveCamera, PlaneGeometry, RGBAFormat,
-  Scene, ShaderMaterial, ShadowMaterial, SRGBColorSpace, Texture, Vector3, WebGLRenderer, RepeatWrapping,
+  Scene, ShaderMaterial, ShadowMaterial, Sphere, SRGBColorSpace, Texture, Vector3, WebGLRenderer, RepeatWrapping,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Graph } from "./graph.js";
@@ -59,7 +59,7 @@ export class World {
 
   light() {
     this.sky = new HemisphereLight(0xffffff, 0x8a8f9a, 1.75);
-    this.sun = new DirectionalLight(0xfff4e2, 2.4);
+    this.sun = new DirectionalLight(0xfff4e2, 2.7);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.shade = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new ShadowMaterial({ opacity: 0.26, depthWrite: false }));
@@ -90,11 +90,13 @@ export class World {
     this.look = this.lookMap.image.data;
     for (const part of model.parts) this.writeForm(part);
     this.attributes(model.geometry);
+    this.sphere = new Sphere(new Vector3(), Infinity);
     model.geometry.lists.forEach((list, i) => list.length > 0 && this.addSurface(list, model.geometry.materials[i]));
     this.addLines(model.geometry.lines);
     this.graph = new Graph(model, this.uniforms);
     this.scene.add(this.graph.object);
     this.hasShadows = model.geometry.triangles <= kMostShadowTriangles;
+    this.side = this.direction();
     this.setGround();
     this.frame();
   }
@@ -102,7 +104,7 @@ export class World {
   writeForm(part) {
     const at = part.index * 4 * kLookTexels;
     const rest = { chunk: this.model.motion.movers.length > 0 && part.wall?.extras.kind !== "solid" ? 0.2 : 0.55 }[part.kind] ?? 0.6;
-    const form = [part.halfLength, Math.min(0.5, part.halfLength / 2) || 1, 0, rest, this.model.geometry.radii[part.index], ...this.model.explode.subarray(3 * part.index, 3 * part.index + 3)];
+    const form = [part.halfLength, Math.min(0.5, part.halfLength / 2) || 1, 0, rest, this.model.geometry.widths[part.index], ...this.model.explode.subarray(3 * part.index, 3 * part.index + 3)];
     this.look.set(form, at + 4);
   }
 
@@ -118,6 +120,7 @@ export class World {
     const geometry = new BufferGeometry();
     for (const [name, attribute] of Object.entries(this.shared)) geometry.setAttribute(name, attribute);
     geometry.setIndex(new BufferAttribute(list, 1));
+    geometry.boundingSphere = this.sphere;  // or three.js would look at every vertex
     return geometry;
   }
 
@@ -177,8 +180,8 @@ export class World {
     uniforms.centre.value.copy(this.grid.position);
     const { sun } = this;
     // From behind the camera's left shoulder.
-    const view = this.direction();
-    const from = new Vector3(view.x - 0.75 * view.z, 1.15 * Math.hypot(view.x, view.z), view.z + 0.75 * view.x);
+    const view = this.side;
+    const from = new Vector3(view.x - 0.5 * view.z, 0.95 * Math.hypot(view.x, view.z), view.z + 0.5 * view.x);
     sun.position.copy(middle).addScaledVector(from.normalize(), 3 * size);
     sun.target.position.copy(middle);
     Object.assign(sun.shadow.camera, { left: -size, right: size, top: size, bottom: -size, near: size, far: 5.5 * size });
@@ -188,14 +191,16 @@ export class World {
     this.scene.fog = null;
   }
 
-  /** From which side: a little from above, where the chunks of a hit wall go. */
+  /** From which side at the start: a little from above, where the chunks of a hit wall go. */
   direction() {
     const { parts, motion } = this.model;
     const ball = parts.find((part) => part.kind === "projectile");
     const isBuilding = parts.some((part) => part.kind === "member");
-    const side = ball ? Math.sign(motion.centre(ball)[2] - this.middle.z) || 1 : 1;
+    const { low, high } = this.model.box;
+    const sideOf = (k) => (ball ? Math.sign(motion.centre(ball)[k] - (low[k] + high[k]) / 2) || 1 : 1);
+    const side = sideOf(2);
     if (isBuilding) {
-      const x = ball ? Math.sign(motion.centre(ball)[0] - this.middle.x) || 1 : 1;
+      const x = sideOf(0);
       return new Vector3(0.8 * x, 0.42, 1.0 * (ball ? side : 1));
     }
     return new Vector3(0.52, 0.3, ball ? -side : 1);
@@ -203,7 +208,7 @@ export class World {
 
   frame() {
     const { box } = this.model, { camera, middle } = this;
-    const direction = this.direction().normalize();
+    const direction = this.side.clone().normalize();
     camera.position.copy(middle).add(direction);
     camera.lookAt(middle);
     camera.updateMatrixWorld();
