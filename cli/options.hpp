@@ -9,12 +9,12 @@
 
 namespace sunder {
 
-enum class Verb { fracture, impact, collapse, check, schema };
+enum class Verb { fracture, impact, collapse, check, schema, view };
 
 /// The command line, as given.
 struct Options {
   Verb verb = Verb::fracture;
-  std::vector<std::filesystem::path> inputs;  ///< scene, or files to check
+  std::vector<std::filesystem::path> inputs;  ///< scene, or files to check or view
   std::string schema = "scene";
   std::string made_scene;  ///< scene text made from --wall … or a model; empty: none
   bool is_model = false;   ///< the input is a model

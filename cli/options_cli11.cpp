@@ -260,7 +260,7 @@ void set_hulls(Options& options, const Given& given) {
 CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb =
       *app.add_subcommand("fracture", "Pre-fracture the walls and solids of a scene, or a model");
-  add_scene_options(verb, options, given, ".glb .gltf .obj .stl .ply .svg .json");
+  add_scene_options(verb, options, given, ".glb .gltf .obj .stl .ply .svg .html .json");
   verb.get_option("scene")->description("Scene file (JSON), or a model: .obj .glb .gltf .stl .ply");
   add_wall_options(verb, given.wall);
   add_solid_options(verb, given.solid);
@@ -282,18 +282,18 @@ void add_run_options(CLI::App& verb, Options& options, Given& given, const char*
 CLI::App& add_impact(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb =
       *app.add_subcommand("impact", "Simulate what a scene's projectiles do to its walls");
-  add_run_options(verb, options, given, ".glb .gltf .svg .json");
+  add_run_options(verb, options, given, ".glb .gltf .svg .html .json");
   return verb;
 }
 
 CLI::App& add_collapse(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb = *app.add_subcommand("collapse", "Bring a scene's frame building down");
-  add_run_options(verb, options, given, ".glb .gltf .svg .json, with --at .obj");
+  add_run_options(verb, options, given, ".glb .gltf .svg .html .json, with --at .obj");
   verb.add_option("--history", options.history,
                   "Write the loads of every joint over time to this file: .csv .json");
   verb.add_option("--at", given.at,
-                  "Write .glb, .gltf and .obj as everything stands at this time, without animation "
-                  "[s]");
+                  "Write .glb, .gltf, .html and .obj as everything stands at this time, without "
+                  "animation [s]");
   return verb;
 }
 
@@ -309,6 +309,19 @@ CLI::App& add_schema(CLI::App& app, Options& options) {
   verb.add_option("which", options.schema,
                   "scene, material, report (of fracture and check), impact-report or "
                   "collapse-report; parameters: the parameter tables as Markdown");
+  return verb;
+}
+
+CLI::App& add_view(CLI::App& app, Options& options) {
+  CLI::App& verb =
+      *app.add_subcommand("view", "Make a 3D page of assets and runs, in one file without links");
+  verb.add_option("files", options.inputs,
+                  "What to show: .glb .gltf .obj .stl .ply; a report (.json) belongs to the file "
+                  "before it")
+      ->required();
+  one_value_each(verb.add_option("-o,--output", options.outputs, "Page to write: .html"))
+      ->required();
+  verb.add_flag("-q,--quiet", options.quiet, "Print errors only")->disable_flag_override();
   return verb;
 }
 
@@ -363,7 +376,7 @@ void finish_collapse(const Options& options) {
     return path.extension() != ".json" && path.extension() != ".svg";
   };
   if (options.at && std::ranges::none_of(options.outputs, shows_a_moment))
-    usage("--at says which moment -o FILE.glb, .gltf or .obj shows, and there is none");
+    usage("--at says which moment -o FILE.glb, .gltf, .html or .obj shows, and there is none");
 }
 
 void finish_check(const Options& options) {
@@ -417,6 +430,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
       {&add_collapse(app, options, given), Verb::collapse},
       {&add_check(app, options), Verb::check},
       {&add_schema(app, options), Verb::schema},
+      {&add_view(app, options), Verb::view},
   };
   if (!parse(app, argc, argv)) return {};
 
@@ -429,7 +443,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
     case Verb::impact: finish_impact(options); break;
     case Verb::collapse: finish_collapse(options); break;
     case Verb::check: finish_check(options); break;
-    case Verb::schema: break;
+    case Verb::schema:
+    case Verb::view: break;
   }
   check_outputs(options);
   return options;

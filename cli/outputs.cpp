@@ -9,6 +9,7 @@
 #include "io/export_recording.hpp"
 #include "io/joint_history.hpp"
 #include "io/output.hpp"
+#include "io/page.hpp"
 
 namespace sunder {
 namespace {
@@ -32,17 +33,19 @@ fs::path canonical_of(fs::path path) {
 void check_suffix(const fs::path& path, const Options& options) {
   const std::string suffix = path.extension();
   const bool is_collapse = options.verb == Verb::collapse;
+  if (suffix == ".html") return require_page();  // before the work is done
+  if (options.verb == Verb::view) usage("-o " + path.string() + ": view writes .html");
   if (suffix == ".json") return;
   if (is_collapse || options.verb == Verb::impact) {
     if (is_recording_suffix(suffix)) return;
     if (is_collapse && options.at && is_recording_suffix(suffix, true)) return;
     usage("-o " + path.string() + ": " +
-          (is_collapse ? "collapse writes .glb .gltf .svg .json, and .obj with --at"
-                       : "impact writes .glb .gltf .svg .json"));
+          (is_collapse ? "collapse writes .glb .gltf .svg .html .json, and .obj with --at"
+                       : "impact writes .glb .gltf .svg .html .json"));
   }
   if (!is_export_suffix(suffix))
     usage("-o " + path.string() +
-          ": the suffix says the format, one of .glb .gltf .obj .stl .ply .svg .json");
+          ": the suffix says the format, one of .glb .gltf .obj .stl .ply .svg .html .json");
 }
 
 std::vector<fs::path> written_files(const Options& options) {

@@ -8,15 +8,17 @@
 #include "io/export_files.hpp"
 #include "io/gltf.hpp"
 #include "io/obj.hpp"
+#include "io/page.hpp"
 #include "io/scene.hpp"
 #include "io/solid_view.hpp"
+#include "io/string_sink.hpp"
 #include "io/svg.hpp"
 #include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
 
-constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl", ".ply", ".svg"};
+constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl", ".ply", ".svg", ".html"};
 
 void write_pair(std::span<const WallView> walls, const std::filesystem::path& path,
                 const std::string& suffix) {
@@ -115,12 +117,18 @@ void export_asset(const MeshedAsset& asset, const std::filesystem::path& path) {
   if (suffix == ".svg") {
     return write_file(path, draw_svg(asset.asset, asset.solids));
   }
-  if (suffix != ".glb" && suffix != ".gltf" && suffix != ".obj") {
+  if (suffix != ".glb" && suffix != ".gltf" && suffix != ".obj" && suffix != ".html") {
     return export_through_assimp(asset, path);
   }
   const std::vector<WallView> walls = views_of(asset, path);
   try {
     validate(walls);
+    if (suffix == ".html") {
+      PageModel model{path.stem().string(), {}, {}, {}};
+      StringSink sink(model.file);
+      write_glb(walls, sink);
+      return write_page(path, {&model, 1});
+    }
     if (suffix != ".glb") return write_pair(walls, path, suffix);
     OutputFile file(path);
     BackgroundSink sink(file);

@@ -14,7 +14,7 @@
 
 namespace sunder {
 
-/// Suffixes export_asset writes: .glb .gltf .obj .stl .ply .svg
+/// Suffixes export_asset writes: .glb .gltf .obj .stl .ply .svg .html
 bool is_export_suffix(const std::string& suffix);
 
 /// An asset with the render meshes of its walls, made once for any number of files; and solids
@@ -38,7 +38,7 @@ void add_hulls(MeshedAsset& asset, const HullParams& params, const std::vector<M
 /// Writes the asset in the format of the path's suffix; whole or not at all (a .gltf with its .bin,
 /// an .obj with its .mtl). GLB, glTF and OBJ are written straight from the meshes by the writers
 /// that are also registered with assimp (export_through_assimp), byte for byte the same; STL and
-/// PLY by assimp; SVG by ourselves. A solid's textures stand inside a .glb; a .gltf or .mtl refers
+/// PLY by assimp; SVG and the page (see page.hpp) by ourselves. A solid's textures stand inside a .glb; a .gltf or .mtl refers
 /// to the files by their path from its folder. Throws Error{usage} for another suffix,
 /// Error{output} on failure. Same asset, same bytes.
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path);

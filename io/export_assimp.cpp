@@ -538,7 +538,7 @@ const char* format_of(const std::filesystem::path& path) {
   if (suffix == ".stl") return "stlb";
   if (suffix == ".ply") return "plyb";
   throw Error(ErrorCode::usage, path.string() + ": suffix \"" + path.extension().string() +
-                                    "\" is not one of .glb .gltf .obj .stl .ply .svg");
+                                    "\" is not one of .glb .gltf .obj .stl .ply .svg .html");
 }
 
 }  // namespace

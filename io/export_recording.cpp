@@ -13,14 +13,16 @@
 #include "io/gltf_animation.hpp"
 #include "io/moment.hpp"
 #include "io/obj.hpp"
+#include "io/page.hpp"
+#include "io/string_sink.hpp"
 #include "io/strip_svg.hpp"
 #include "meshing/error.hpp"
 
 namespace sunder {
 namespace {
 
-constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg"};
-constexpr std::string_view kMomentSuffixes[] = {".glb", ".gltf", ".obj"};
+constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg", ".html"};
+constexpr std::string_view kMomentSuffixes[] = {".glb", ".gltf", ".obj", ".html"};
 constexpr int kMostFrames = 60;
 
 [[noreturn]] void refuse_suffix(const std::string& suffix, bool of_moment) {
@@ -30,10 +32,10 @@ constexpr int kMostFrames = 60;
   if (of_moment) {
     throw Error(
         ErrorCode::usage,
-        "suffix \"" + suffix + "\" of one moment of a recording is not one of .glb .gltf .obj");
+        "suffix \"" + suffix + "\" of one moment of a recording is not one of .glb .gltf .obj .html");
   }
   throw Error(ErrorCode::usage,
-              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg");
+              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg .html");
 }
 
 void check_params(const std::string& suffix, const RecordingParams& params) {
@@ -58,6 +60,12 @@ void write_solids(const Recording& recording, const std::filesystem::path& path,
     walls.push_back(view_of(wall.asset, meshes.back()));
   }
   if (!walls.empty() || recording.parts.empty()) validate(walls);
+  if (suffix == ".html") {
+    PageModel model{path.stem().string(), {}, {}, {}};
+    StringSink sink(model.file);
+    write_glb(walls, sink, &recording, step);
+    return write_page(path, {&model, 1});
+  }
   OutputFile file(path);
   if (suffix == ".glb") {
     BackgroundSink sink(file);

@@ -1,29 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/json_lines.hpp"
 
-#include <cassert>
 #include <cmath>
 
+#include "io/string_sink.hpp"
+
 namespace sunder {
-namespace {
-
-class StringSink : public ByteSink {
- public:
-  explicit StringSink(std::string& text) : text_(text) {}
-  void write(std::span<const std::byte> bytes) override {
-    text_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  }
-  void rewrite_front(std::span<const std::byte> bytes) override {
-    assert(bytes.size() <= text_.size());
-    std::memcpy(text_.data(), bytes.data(), bytes.size());
-  }
-
- private:
-  std::string& text_;
-};
-
-}  // namespace
-
 void JsonLines::open(char bracket) {
   begin();
   out_.text(bracket == '{' ? "{" : "[");

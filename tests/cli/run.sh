@@ -479,7 +479,7 @@ impact_usage() {
   done << 'END'
 |impact needs a scene file
 s.json|impact has nothing to write: give -o FILE
-s.json -o a.obj|-o a.obj: impact writes .glb .gltf .svg .json
+s.json -o a.obj|-o a.obj: impact writes .glb .gltf .svg .html .json
 s.json -o a.glb -o ./a.glb|./a.glb is written twice
 s.json -o ./s.json|./s.json would overwrite the input
 s.json t.json -o a.glb|"t.json" belongs to no option
@@ -556,8 +556,8 @@ collapse_usage() {
   done << 'END'
 |collapse needs a scene file
 s.json|collapse has nothing to write: give -o FILE
-s.json -o a.stl|-o a.stl: collapse writes .glb .gltf .svg .json
-s.json -o a.obj|-o a.obj: collapse writes .glb .gltf .svg .json, and .obj with --at
+s.json -o a.stl|-o a.stl: collapse writes .glb .gltf .svg .html .json
+s.json -o a.obj|-o a.obj: collapse writes .glb .gltf .svg .html .json, and .obj with --at
 s.json -o a.obj -o a.stl --at 1|-o a.stl: collapse writes
 s.json --history x.txt|--history x.txt: a history is a .csv or .json file
 s.json --history x|--history x: a history is a .csv or .json file

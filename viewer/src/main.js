@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { Chart } from "./chart.js";
+import { Colours } from "./colours.js";
+import { embeddedBytes, embeddedList } from "./embedded.js";
+import { readGltf } from "./gltf.js";
+import { readModel } from "./model.js";
+import { jointRows, partRows, reportRows } from "./numbers.js";
+import { Player } from "./player.js";
+import { chartsOf } from "./series.js";
+import { count, seconds } from "./text.js";
+import { World } from "./world.js";
+
+const $ = (id) => document.getElementById(id);
+const kToggles = [
+  ["edges", "Edges", "e"], ["wireframe", "Wireframe", "w"], ["outer", "Outer faces", "o"],
+  ["graph", "Graph", "g"], ["shadows", "Shadows", "s"],
+];
+const kNear = 14;  // CSS pixels within which a click finds a joint
+
+class Page {
+  constructor(list) {
+    this.list = list;
+    this.asked = new URLSearchParams(location.search || location.hash.slice(1));
+    this.shown = { edges: true, wireframe: false, outer: true, graph: false, shadows: true };
+    this.isDirty = true;
+    this.world = new World($("view"), () => (this.isDirty = true));
+    this.player = new Player(() => this.timeChanged());
+    this.charts = [];
+    this.selected = null;
+    this.listen();
+  }
+
+  listen() {
+    new ResizeObserver(() => this.resized()).observe($("stage"));
+    $("play").onclick = () => this.player.toggle();
+    $("time").oninput = () => ((this.player.isPlaying = false), this.player.go(Number($("time").value)));
+    $("rate").onchange = () => (this.player.rate = Number($("rate").value));
+    $("frame").onclick = () => (this.world.frame(), (this.isDirty = true));
+    $("explode").oninput = () => this.explode(Number($("explode").value));
+    $("drop").onclick = () => this.select(null);
+    $("file").onchange = () => this.open(Number($("file").value));
+    addEventListener("keydown", (event) => this.key(event));
+    let down = null;
+    $("view").addEventListener("pointerdown", (event) => (down = event));
+    $("view").addEventListener("pointerup", (event) => {
+      if (down && event.button === 0 && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 4) this.click(event);
+      down = null;
+    });
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || !this.model) return;
+    const isField = /^(SELECT|TEXTAREA)$/.test(event.target.tagName) || (event.target.tagName === "INPUT" && event.target.type === "range" && event.target.id !== "time");
+    if (isField && /^(Arrow|Home|End)/.test(event.key)) return;
+    if (event.key === " " && /^(BUTTON|SUMMARY|SELECT)$/.test(event.target.tagName)) return;
+    const action = this.actionOf(event);
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  actionOf({ key, shiftKey }) {
+    const { player } = this;
+    const toggle = kToggles.find(([, , letter]) => letter === key.toLowerCase());
+    if (toggle && !$(`toggle-${toggle[0]}`).disabled) return () => $(`toggle-${toggle[0]}`).click();
+    const mode = this.colours.modes[Number(key) - 1];
+    if (mode?.has) return () => this.setMode(mode.id);
+    return {
+      " ": () => player.toggle(), ArrowRight: () => player.step(shiftKey ? 10 : 1), ArrowLeft: () => player.step(shiftKey ? -10 : -1),
+      Home: () => player.go(0), End: () => player.go(player.duration), f: () => $("frame").click(), F: () => $("frame").click(), Escape: () => this.select(null),
+    }[key];
+  }
+
+  async open(index) {
+    const entry = this.list[index];
+    this.say(`Opening ${entry.name} …`);
+    await new Promise((done) => setTimeout(done));
+    const start = performance.now();
+    try {
+      const [main, companion] = await Promise.all(entry.files.map(embeddedBytes));
+      const unpacked = performance.now();
+      this.model = readModel(readGltf(main, companion), entry.report ?? null);
+      const read = performance.now();
+      this.world.show(this.model);
+      this.fill(entry);
+      this.say("");
+      this.tell({ unpack: unpacked - start, read: read - unpacked, build: performance.now() - read });
+    } catch (error) {
+      this.say(`${entry.name}: ${error.message}`, true);
+      console.error(error);
+    }
+  }
+
+  /** Measured times, in ms, for whoever looks at the page with tools. */
+  tell(times) {
+    for (const [name, value] of Object.entries(times)) document.documentElement.dataset[name] = value.toFixed(1);
+  }
+
+  say(text, isError = false) {
+    $("message").textContent = text;
+    $("message").classList.toggle("error", isError);
+  }
+
+  fill(entry) {
+    const { model } = this;
+    this.selected = null;
+    this.colours = new Colours(model);
+    $("name").textContent = entry.name;
+    document.title = `${entry.name} – sunder`;
+    $("counts").textContent = this.countsText();
+    this.player.reset(model.motion.times);
+    this.player.rate = Number($("rate").value);
+    $("timeline").hidden = $("time").disabled = model.motion.duration === 0;
+    $("time").max = model.motion.duration;
+    this.world.graph.isEmpty && (this.shown.graph = false);
+    this.fillModes();
+    this.fillToggles();
+    this.fillCharts();
+    this.fillReport();
+    $("explode").value = 0;
+    const mode = this.asked.get("colour") ?? (model.motion.isLit ? "utilisation" : "material");
+    this.world.setShown(this.shown);
+    this.setMode(this.colours.mode(mode).id);
+    if (this.asked.has("explode")) this.explode(Number(this.asked.get("explode")));
+    this.player.go(Number(this.asked.get("t") ?? 0));
+    this.select(null);
+    this.resized();
+    this.world.frame();
+    this.isDirty = true;
+  }
+
+  countsText() {
+    const { parts, motion, joints, scene } = this.model;
+    const of = (kind) => parts.filter((part) => part.kind === kind).length;
+    const words = [["chunk", "chunk"], ["member", "member"], ["panel", "panel"], ["projectile", "projectile"], ["part", "mesh"]];
+    const texts = words.filter(([kind]) => of(kind) > 0).map(([kind, word]) => count(of(kind), word).replace("meshs", "meshes"));
+    const jointCount = joints.length || scene.joints;
+    if (jointCount) texts.push(count(jointCount, "joint"));
+    if (motion.duration > 0) texts.push(`${motion.duration.toFixed(2)} s`);
+    return texts.join(" · ");
+  }
+
+  fillModes() {
+    $("modes").replaceChildren(...this.colours.modes.map((mode, i) => {
+      const label = document.createElement("label");
+      const input = Object.assign(document.createElement("input"), { type: "radio", name: "mode", value: mode.id, disabled: !mode.has, id: `mode-${mode.id}` });
+      input.onchange = () => this.setMode(mode.id);
+      label.title = mode.has ? `Key ${i + 1}` : `This file has no ${mode.why}`;
+      label.append(input, Object.assign(document.createElement("span"), { textContent: mode.label }));
+      return label;
+    }));
+  }
+
+  fillToggles() {
+    $("toggles").replaceChildren(...kToggles.map(([id, text, letter]) => {
+      const label = document.createElement("label");
+      const input = Object.assign(document.createElement("input"), { type: "checkbox", id: `toggle-${id}`, checked: this.shown[id] });
+      if (id === "graph") input.disabled = this.world.graph.isEmpty;
+      if (id === "outer") input.disabled = !this.model.geometry.materials.some((m, i) => m.isInner && this.model.geometry.lists[i].length > 0);
+      if (input.disabled) label.title = id === "graph" ? "This file has no bonds or joints" : "This file has no inner faces";
+      else label.title = `Key ${letter.toUpperCase()}`;
+      input.onchange = () => this.toggle(id, input.checked);
+      label.append(input, Object.assign(document.createElement("span"), { textContent: text }));
+      return label;
+    }));
+  }
+
+  toggle(id, isOn) {
+    this.shown[id] = isOn;
+    if (id === "graph" && isOn) this.world.graph.build();
+    this.world.setShown(this.shown);
+    this.world.graph.seek(this.player.time);
+    this.isDirty = true;
+  }
+
+  fillCharts() {
+    const { charts, missing } = chartsOf(this.model);
+    this.charts = charts.map((series) => new Chart(series, this.model.motion.duration, (time) => ((this.player.isPlaying = false), this.player.go(time))));
+    $("charts").replaceChildren(...this.charts.map((chart) => chart.element));
+    $("charts").hidden = this.charts.length === 0;
+    const isRun = this.model.motion.duration > 0;
+    $("missing").textContent = isRun && missing.length > 0 ? `The file has no time series of ${missing.join(", ").replace(/, ([^,]*)$/, " and $1")}.` : "";
+    requestAnimationFrame(() => this.charts.forEach((chart) => chart.paint()));
+    this.markEvents();
+  }
+
+  /** Ticks on the timeline where something broke. */
+  markEvents() {
+    const canvas = $("marks");
+    const width = (canvas.width = Math.round(canvas.clientWidth * devicePixelRatio)), height = (canvas.height = Math.round(canvas.clientHeight * devicePixelRatio));
+    const { model } = this;
+    if (!width || !model?.motion.duration) return;
+    const joints = model.joints.length > 0 ? model.joints.map((joint) => joint.broken) : (model.scene.broken_joints ?? []).map((joint) => joint.time);
+    const times = [...joints, ...model.events.map((event) => event.time)].filter(Number.isFinite);
+    const context = canvas.getContext("2d");
+    context.fillStyle = getComputedStyle(canvas).color;
+    context.globalAlpha = times.length > 60 ? 0.35 : 0.7;
+    for (const time of times) context.fillRect((time / model.motion.duration) * (width - 2), 0, Math.max(1, devicePixelRatio), height);
+  }
+
+  fillReport() {
+    const rows = reportRows(this.model.report);
+    $("report").hidden = rows.length === 0;
+    this.fillList($("reported"), rows);
+  }
+
+  fillList(list, rows) {
+    list.replaceChildren(...rows.flatMap(([name, text]) => [
+      Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: text }),
+    ]));
+  }
+
+  setMode(id) {
+    this.mode = this.colours.mode(id);
+    $(`mode-${this.mode.id}`).checked = true;
+    $("key").replaceChildren(this.colours.key(this.mode.id));
+    this.world.uniforms.showLoads.value = this.mode.id === "utilisation" ? 1 : 0;
+    this.paint();
+  }
+
+  paint() {
+    this.colours.paint(this.mode.id, this.player.time, (part, rgb, amount) => this.world.paint(part, rgb, amount));
+    this.isDirty = true;
+  }
+
+  explode(amount) {
+    $("explode").value = amount;
+    this.world.uniforms.explode.value = amount;
+    this.world.refreshShadows();
+    this.isDirty = true;
+  }
+
+  timeChanged() {
+    if (!this.model) return;
+    const { time, isPlaying } = this.player;
+    this.model.motion.seek(time);
+    if (this.mode?.id === "speed") this.paint();
+    this.world.moved(time);
+    this.world.graph.seek(time);
+    $("time").value = time;
+    $("time").setAttribute("aria-valuetext", seconds(time));
+    $("clock").textContent = seconds(time);
+    document.body.classList.toggle("playing", isPlaying);
+    $("play").setAttribute("aria-label", isPlaying ? "Stop" : "Play");
+    for (const chart of this.charts) chart.seek(time);
+    this.tellSelected();
+    this.isDirty = true;
+  }
+
+  async click(event) {
+    if (!this.model) return;
+    const box = $("view").getBoundingClientRect();
+    const x = event.clientX - box.left, y = event.clientY - box.top;
+    this.select(this.jointAt(x, y) ?? (await this.world.picker.at(x, y)));
+  }
+
+  jointAt(x, y) {
+    if (!this.shown.graph) return null;
+    let best = null, nearest = kNear;
+    for (const joint of this.model.joints) {
+      const at = this.world.onScreen(joint);
+      const distance = at ? Math.hypot(at.x - x, at.y - y) : Infinity;
+      if (distance < nearest) (nearest = distance), (best = joint);
+    }
+    return best;
+  }
+
+  /** Shows the numbers of a part or joint; null: of nothing. */
+  select(thing) {
+    for (const part of this.partsOf(this.selected)) this.world.mark(part, false);
+    this.selected = thing;
+    for (const part of this.partsOf(thing)) this.world.mark(part, true);
+    $("selection").hidden = !thing;
+    if (thing) {
+      $("picked").textContent = thing.name;
+      this.fillRelated(thing);
+      this.tellSelected();
+    }
+    this.isDirty = true;
+  }
+
+  partsOf(thing) {
+    if (!thing) return [];
+    return thing.point ? [thing.a, thing.b].filter(Boolean) : [thing];
+  }
+
+  fillRelated(thing) {
+    const others = thing.point ? this.partsOf(thing) : (thing.joints ?? []);
+    $("related").replaceChildren(...others.map((other) => {
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: other.name });
+      button.onclick = () => this.select(other);
+      return button;
+    }));
+  }
+
+  tellSelected() {
+    const { selected, model, player } = this;
+    if (!selected) return;
+    if (selected.point) return this.fillList($("numbers"), jointRows(selected, model, player.time));
+    const { speeds } = this.colours;
+    if (this.mode.id !== "speed") speeds[selected.index] = model.motion.speedOf(selected, player.time);
+    this.fillList($("numbers"), partRows(selected, model, player.time, speeds));
+  }
+
+  resized() {
+    const { clientWidth: width, clientHeight: height } = $("stage");
+    const size = `${width} ${height} ${devicePixelRatio}`;
+    if (width === 0 || height === 0 || size === this.size) return;
+    this.size = size;
+    const aspect = this.world.camera.aspect;
+    this.world.resize(width, height);
+    if (this.model && Math.abs(aspect - width / height) > 0.3) this.world.frame();
+    for (const chart of this.charts) chart.paint();
+    this.markEvents();
+    if (document.documentElement.dataset.ready) this.draw();  // at once, or it would be blank for a frame
+  }
+
+  draw() {
+    this.isDirty = false;
+    this.world.draw();
+    const { dataset } = document.documentElement;
+    dataset.frames = Number(dataset.frames ?? 0) + 1;
+    dataset.ready ??= performance.now().toFixed(0);
+  }
+
+  run() {
+    let last = performance.now();
+    const frame = (now) => {
+      requestAnimationFrame(frame);
+      const start = performance.now();
+      this.player.advance(Math.min((now - last) / 1000, 0.1));
+      last = now;
+      this.world.controls.update();
+      if (!this.isDirty || !this.model) return;
+      this.draw();
+      this.tell({ frame: performance.now() - start });
+    };
+    requestAnimationFrame(frame);
+  }
+}
+
+async function start() {
+  const list = embeddedList();
+  let page;
+  try {
+    page = new Page(list);
+  } catch (error) {
+    $("message").textContent = `This page needs WebGL 2, which this browser does not give it: ${error.message}`;
+    $("message").classList.add("error");
+    return;
+  }
+  if (list.length === 0) return page.say("There is no file in this page.", true);
+  $("files").hidden = list.length === 1;
+  $("file").replaceChildren(...list.map((entry, i) => Object.assign(document.createElement("option"), { value: i, textContent: entry.name })));
+  await page.open(0);
+  page.run();
+}
+
+start();
