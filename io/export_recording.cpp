@@ -19,8 +19,7 @@
 namespace sunder {
 namespace {
 
-constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg"};
-constexpr std::string_view kMomentSuffixes[] = {".glb", ".gltf", ".obj"};
+constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg", ".png"};
 constexpr int kMostFrames = 60;
 
 [[noreturn]] void refuse_suffix(const std::string& suffix, bool of_moment) {
@@ -28,12 +27,12 @@ constexpr int kMostFrames = 60;
     throw Error(ErrorCode::usage, "an .obj holds one moment of a recording: say at which time");
   }
   if (of_moment) {
-    throw Error(
-        ErrorCode::usage,
-        "suffix \"" + suffix + "\" of one moment of a recording is not one of .glb .gltf .obj");
+    throw Error(ErrorCode::usage,
+                "suffix \"" + suffix +
+                    "\" of one moment of a recording is not one of .glb .gltf .obj .svg .png");
   }
   throw Error(ErrorCode::usage,
-              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg");
+              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg .png");
 }
 
 void check_params(const std::string& suffix, const RecordingParams& params) {
@@ -77,11 +76,19 @@ void write_solids(const Recording& recording, const std::filesystem::path& path,
   commit_pair(companion, file);
 }
 
+std::string draw_pictures(const Recording& recording, const RecordingParams& params) {
+  StripParams strip{.frames = params.frames,
+                    .has_ground = params.has_ground,
+                    .ground_height = params.ground_height};
+  if (params.at) strip.only = step_nearest(recording, *params.at);
+  return draw_strip(recording, strip);
+}
+
 }  // namespace
 
 bool is_recording_suffix(const std::string& suffix, bool of_moment) {
-  const auto& suffixes = of_moment ? kMomentSuffixes : kSuffixes;
-  return std::ranges::find(suffixes, suffix) != std::end(suffixes);
+  return (of_moment && suffix == ".obj") ||
+         std::ranges::find(kSuffixes, suffix) != std::end(kSuffixes);
 }
 
 void export_recording(const Recording& recording, const std::filesystem::path& path,
@@ -90,10 +97,9 @@ void export_recording(const Recording& recording, const std::filesystem::path& p
   check_params(suffix, params);
   try {
     validate(recording);
-    if (suffix != ".svg") return write_solids(recording, path, suffix, params);
-    write_file(path, draw_strip(recording, {.frames = params.frames,
-                                            .has_ground = params.has_ground,
-                                            .ground_height = params.ground_height}));
+    if (suffix != ".svg" && suffix != ".png") return write_solids(recording, path, suffix, params);
+    const std::string svg = draw_pictures(recording, params);
+    write_file(path, suffix == ".png" ? png_of(svg, params.picture_width) : svg);
   } catch (const Error& error) {
     const std::string message = error.what();
     if (message.starts_with(path.string())) throw;
