@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
     case sunder::Verb::collapse: return sunder::run_collapse(*options);
     case sunder::Verb::check: return sunder::run_check(*options);
     case sunder::Verb::schema: return sunder::run_schema(*options);
+    case sunder::Verb::completion: return sunder::run_completion(*options);
   }
   return sunder::kExitBug;
 }

@@ -21,5 +21,6 @@ int run_impact(const Options& options);
 int run_collapse(const Options& options);
 int run_check(const Options& options);
 int run_schema(const Options& options);
+int run_completion(const Options& options);
 
 }  // namespace sunder
