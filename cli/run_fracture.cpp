@@ -82,7 +82,8 @@ Fractured fracture(const Scene& scene, const Options& options, int threads) {
 }
 
 bool needs_meshes(const std::filesystem::path& path) {
-  return path.extension() != ".svg" && path.extension() != ".json";
+  const std::string suffix = suffix_of(path);
+  return suffix != ".svg" && suffix != ".png" && suffix != ".json";
 }
 
 bool holds_hulls(const std::filesystem::path& path) {
@@ -220,6 +221,7 @@ int run_fracture(const Options& options) {
     add_hulls(meshes, scene.hulls, scene.materials, threads);
     watch.lap("hulls");
   }
+  meshes.picture_width = options.picture_width.value_or(kPictureWidth);
   for (const auto& path : options.outputs)
     if (!wants_report(path)) export_asset(meshes, path);
   watch.lap("write");

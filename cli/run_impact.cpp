@@ -7,6 +7,7 @@
 #include "cli/print_run.hpp"
 #include "cli/progress.hpp"
 #include "cli/read_scene.hpp"
+#include "cli/recording_params.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
 #include "io/export_recording.hpp"
@@ -48,6 +49,7 @@ Scene read_impact_scene(const Options& options) {
   for (const Wall& wall : scene.walls)
     if (!wall.asset.empty()) assets.emplace_back(wall.asset);
   check_not_written(options, assets);
+  check_moment(options, scene);
   if (scene.walls.empty())
     throw Error(ErrorCode::input, "the scene has no walls, so there is nothing to hit");
   return scene;
@@ -76,10 +78,7 @@ int run_impact(const Options& options) {
   if (const std::string warning = shortfall(scene, settings); !warning.empty())
     result.warnings.push_back(warning);
   watch.lap("simulate");
-  const SimulationParams& simulation = scene.simulation;
-  const RecordingParams recording{.has_ground = simulation.ground,
-                                  .ground_height = simulation.ground_height,
-                                  .threads = threads};
+  const RecordingParams recording = recording_params(options, scene.simulation, result.recording);
   for (const auto& path : options.outputs)
     if (path.extension() != ".json") export_recording(result.recording, path, recording);
   watch.lap("write");

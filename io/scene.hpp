@@ -63,6 +63,8 @@ const Material& find_material(const std::vector<Material>& materials, const std:
 
 /// JSON Schema (draft-07) of "scene", "material", "report" (of fracture and check), "impact-report"
 /// or "collapse-report". Throws Error{usage} for another.
+inline constexpr std::string_view kSchemas[] = {"scene", "material", "report", "impact-report",
+                                                "collapse-report"};
 std::string json_schema(std::string_view which);
 /// docs/parameters.md, from the same tables.
 std::string parameters_markdown();
