@@ -44,7 +44,7 @@ struct Rest {
 Rest rest(const Frame& frame, const Method& method, double seconds, double budget_s = 1e9);
 
 /// Largest utilisation of joint `j` of the frame by a reaction on its part a.
-double utilisation_of(const Frame& frame, std::uint32_t j, const Reaction& reaction);
+double utilisation_of(const Frame& frame, std::uint32_t j, const PartReaction& reaction);
 
 /// Sag against solver settings: tables, and the plot as SVG if `plot` is not empty.
 void measure_rest(const std::string& plot);

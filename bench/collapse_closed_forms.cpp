@@ -31,7 +31,7 @@ std::vector<Method> methods_of_cases() {
 
 /// Load of the base joint: its mean over the second half of 10 s; descent of the top at the end.
 struct Held {
-  Reaction base;
+  PartReaction base;
   double sag = 0;
 };
 Held hold(const Assembly& assembly, const Method& method) {
@@ -41,7 +41,7 @@ Held hold(const Assembly& assembly, const Method& method) {
   for (int i = 0; i < steps; ++i) {
     step_once(*world, method, i);
     if (2 * i < steps) continue;
-    const Reaction now = world->reaction(0);
+    const PartReaction now = world->reaction(0);
     const double share = 1.0 / (steps - steps / 2);
     held.base.force = held.base.force + share * now.force;
     held.base.torque = held.base.torque + share * now.torque;

@@ -82,7 +82,7 @@ void note_sag(const FrameWorld& world, const Assembly& assembly, double& mean, d
 void note_joints(const FrameWorld& world, const Frame& frame, Rest& result) {
   for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
     result.gap = std::max(result.gap, world.gap(j));
-    const Reaction reaction = world.reaction(j);
+    const PartReaction reaction = world.reaction(j);
     const double use = utilisation_of(frame, j, reaction);
     result.overloaded += use >= 1;
     result.utilisation = std::max(result.utilisation, use);
@@ -251,7 +251,7 @@ double step_once(FrameWorld& world, const Method& method, int number) {
   return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-double utilisation_of(const Frame& frame, std::uint32_t j, const Reaction& reaction) {
+double utilisation_of(const Frame& frame, std::uint32_t j, const PartReaction& reaction) {
   const FrameJoint& joint = frame.joints[j];
   const double side = joint.end_a == 1 ? 1 : -1;
   return utilisation({side * reaction.force, side * reaction.torque}, joint.strength).total;
