@@ -97,7 +97,7 @@ Job collapse_job() {
     job.points.push_back(
         {text("\"simulation.solver\": \"hybrid\", \"simulation.step\": %.10g", step), off.worst(),
          swinging.ms,
-         text("deflection %.1e, period %.1e, loads %.1e", off.deflection, off.period, off.loads)});
+         text("deflection %.1e, period %.1e, moments %.1e, feet %.1e", off.deflection, off.period, off.moments, off.feet)});
   }
   const Frame frame = building_of(size);
   const Truth truth = truth_of(frame);

@@ -2,7 +2,7 @@
 // The impact tables of docs/accuracy.md: bodies alone against closed forms, whole shots against
 // conservation and published formulas, scatter, and the sweep that looks for failures.
 // Usage: bench_impact_accuracy
-// [world|ledger|limits|residuals|formulas|polygons|cracks|scatter|sleep| sweep]
+// [world|work|ledger|limits|residuals|formulas|polygons|cracks|scatter|sleep| sweep]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -566,11 +566,17 @@ void measure_sleep() {
 
 int main(int count, char** values) {
   using namespace sunder;
-  const std::pair<std::string, void (*)()> parts[] = {
-      {"world", measure_rigid_world},   {"ledger", ledger},           {"limits", ballistic_limits},
-      {"residuals", measure_residuals}, {"formulas", worked_shots},   {"polygons", damage_polygons},
-      {"cracks", radial_cracks},        {"scatter", measure_scatter}, {"sleep", measure_sleep},
-      {"sweep", sweep_stability}};
+  const std::pair<std::string, void (*)()> parts[] = {{"world", measure_rigid_world},
+                                                      {"work", measure_engines},
+                                                      {"ledger", ledger},
+                                                      {"limits", ballistic_limits},
+                                                      {"residuals", measure_residuals},
+                                                      {"formulas", worked_shots},
+                                                      {"polygons", damage_polygons},
+                                                      {"cracks", radial_cracks},
+                                                      {"scatter", measure_scatter},
+                                                      {"sleep", measure_sleep},
+                                                      {"sweep", sweep_stability}};
   for (const auto& [name, measure] : parts)
     if (count < 2 || name == values[1]) measure();
 }

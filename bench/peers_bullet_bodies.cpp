@@ -37,7 +37,7 @@ class BulletBodies final : public BodyWorld {
                                   ? static_cast<btCollisionShape*>(new btSphereShape(body.radius))
                                   : new btBoxShape(as_bullet(body.half));
     btRigidBody& made =
-        add_body(body.mass, shape, {btQuaternion({0, 0, 1}, body.turn), as_bullet(body.centre)});
+        add_body(body.mass, shape, btTransform({{0, 0, 1}, body.turn}, as_bullet(body.centre)));
     made.setMassProps(body.mass, as_bullet(moments_of(body)));
     made.updateInertiaTensor();
     made.setLinearVelocity(as_bullet(body.velocity));
@@ -47,7 +47,7 @@ class BulletBodies final : public BodyWorld {
   }
   void add_slope(double angle) override {
     add_body(0, new btBoxShape({50, 0.5, 5}),
-             {btQuaternion({0, 0, 1}, angle), {0.5 * std::sin(angle), -0.5 * std::cos(angle), 0}});
+             btTransform({{0, 0, 1}, angle}, {0.5 * std::sin(angle), -0.5 * std::cos(angle), 0}));
   }
   void step(double dt) override { world_.stepSimulation(dt, 0); }
   Vec3 centre(std::size_t body) const override {

@@ -33,7 +33,7 @@ class Follower {
 }  // namespace
 
 double RingingCase::Error::worst() const {
-  return std::max({deflection, period, loads});
+  return std::max({deflection, period, moments, feet});
 }
 
 double RingingCase::value(const Watch& watch, const JointLoad& load) const {
@@ -104,15 +104,17 @@ Swinging RingingCase::stepped(double step) const {
 
 RingingCase::Error RingingCase::error(const Swinging& swinging) const {
   Error error{std::fabs(swinging.deflection / exact_.deflection - 1),
-              std::fabs(swinging.crossing / exact_.crossing - 1), 0};
+              std::fabs(swinging.crossing / exact_.crossing - 1), 0, 0};
   double change[2] = {};
   for (std::size_t i = 0; i < watched_.size(); ++i) {
-    double& most = change[watched_[i].is_beam ? 1 : 0];
+    double& most = change[watched_[i].is_beam];
     most = std::max(most, exact_.peaks[i] - watched_[i].before);
   }
-  for (std::size_t i = 0; i < watched_.size(); ++i)
-    error.loads = std::max(error.loads, std::fabs(swinging.peaks[i] - exact_.peaks[i]) /
-                                            change[watched_[i].is_beam ? 1 : 0]);
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const bool is_beam = watched_[i].is_beam;
+    double& most = is_beam ? error.moments : error.feet;
+    most = std::max(most, std::fabs(swinging.peaks[i] - exact_.peaks[i]) / change[is_beam]);
+  }
   return error;
 }
 

@@ -26,7 +26,7 @@ class RingingCase {
   Swinging stepped(double step) const;
   /// Largest of: deflection and crossing, relative; loads, by the largest change of its kind.
   struct Error {
-    double deflection = 0, period = 0, loads = 0;
+    double deflection = 0, period = 0, moments = 0, feet = 0;
     double worst() const;
   };
   Error error(const Swinging& swinging) const;
