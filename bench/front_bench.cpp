@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What settings cost and how far off they are: the measured points by which `--max-error` chooses.
-// Prints a table per job; writes them as JSON where it is told. Usage: bench_front [FILE.json]
+// Prints a table per job; beside the folder of results, data/error_fronts.json has them as JSON.
+// Usage: bench_front
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,7 +28,7 @@ struct Point {
 };
 
 struct Job {
-  const char *name, *error, *time, *rest;
+  const char *name, *block, *error, *time, *rest;
   std::vector<Point> points;
 };
 
@@ -39,6 +40,7 @@ double least_ms(int runs, const std::function<void()>& work) {
 
 Job impact_job() {
   Job job{"impact",
+          "front impact",
           "largest relative error over rigid bodies with closed forms: head-on hits, free fall, "
           "bounces, sliding, sticking, rolling, Housner's rocking block, a toppling wall, and the "
           "lean of a tower of ten blocks by its block's edge",
@@ -79,6 +81,7 @@ Point rigid_point(const Frame& frame, const Truth& truth, int iterations, double
 
 Job collapse_job() {
   Job job{"collapse",
+          "front collapse",
           "largest relative error of deflection, period, and joints' largest loads (by the largest "
           "change) of a building of 4 x 5 posts and 6 storeys that loses a post and is not damped, "
           "against its modes; with rigid members (bullet) of sag, feet and beams' end moments at "
@@ -96,8 +99,9 @@ Job collapse_job() {
     const RingingCase::Error off = ringing.error(swinging);
     job.points.push_back(
         {text("\"simulation.solver\": \"hybrid\", \"simulation.step\": %.10g", step), off.worst(),
-         swinging.ms,
-         text("deflection %.1e, period %.1e, moments %.1e, feet %.1e", off.deflection, off.period, off.moments, off.feet)});
+         swinging.ms.median,
+         text("deflection %.1e, period %.1e, moments %.1e, feet %.1e", off.deflection, off.period,
+              off.moments, off.feet)});
   }
   const Frame frame = building_of(size);
   const Truth truth = truth_of(frame);
@@ -161,14 +165,14 @@ std::vector<Point> front_of(std::vector<Point> points) {
 }
 
 void print(const Job& job) {
-  const Block block(text("front %s", job.name));
-  std::printf("| settings | error | ms | what is off | |\n|---|---|---|---|---|\n");
+  const Block block(job.block);
+  std::printf("| settings | error | ms | what is off | on the front |\n|---|---|---|---|---|\n");
   const std::vector<Point> front = front_of(job.points);
   for (const Point& point : job.points) {
     const bool is_on = std::ranges::any_of(
         front, [&](const Point& other) { return other.settings == point.settings; });
-    std::printf("| %s | %.2g | %.3g | %s | %s |\n", point.settings.c_str(), point.error, point.ms,
-                point.worst.c_str(), is_on ? "front" : "");
+    std::printf("| `%s` | %.2g | %.3g | %s | %s |\n", point.settings.c_str(), point.error, point.ms,
+                point.worst.c_str(), is_on ? "yes" : "");
   }
 }
 
@@ -196,11 +200,13 @@ std::string json_of(const std::vector<Job>& jobs) {
 }  // namespace
 }  // namespace sunder
 
-int main(int count, char** values) {
-  std::vector<sunder::Job> jobs;
-  for (const auto& measure : {sunder::impact_job, sunder::collapse_job, sunder::repair_job}) {
+int main() {
+  using namespace sunder;
+  std::vector<Job> jobs;
+  for (const auto& measure : {impact_job, collapse_job, repair_job}) {
     jobs.push_back(measure());
-    sunder::print(jobs.back());
+    print(jobs.back());
   }
-  if (count > 1) std::ofstream(values[1]) << sunder::json_of(jobs);
+  if (!results_folder().empty())
+    std::ofstream(results_folder() + "/../data/error_fronts.json") << json_of(jobs);
 }

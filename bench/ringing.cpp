@@ -98,7 +98,7 @@ Swinging RingingCase::stepped(double step) const {
       found.peaks[k] =
           std::max(found.peaks[k], value(watched_[k], standing.motion().load(watched_[k].joint)));
   }
-  found.ms = percentile(ms, 0.5) / step;
+  found.ms = {percentile(ms, 0.5) / step, percentile(ms, 0.05) / step, percentile(ms, 0.95) / step};
   return found;
 }
 

@@ -6,6 +6,7 @@
 
 #include "bench/hybrid_bench.hpp"
 #include "bench/modal_eigen.hpp"
+#include "bench/work_precision.hpp"
 
 namespace sunder {
 
@@ -14,7 +15,7 @@ struct Swinging {
   double deflection = 0;      ///< largest, of the node above the post, m
   double crossing = 0;        ///< when that node passes its place at rest for the fourth time, s
   std::vector<double> peaks;  ///< largest load of watched joints (N m, N), by watch
-  double ms = 0;              ///< processor time of all threads per simulated second, median
+  Spread ms;                  ///< processor time of all threads per simulated second
 };
 
 /// A post of a building is taken away at once, nothing damps: hybrid's steps against the modes.

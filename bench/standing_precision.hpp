@@ -19,12 +19,13 @@ Truth truth_of(const Frame& frame);
 
 /// What rigid members make of it.
 struct RigidStanding {
-  double sag = 0;                  ///< mean of the roof, m
-  double foot = 0;                 ///< the worst foot's force off, relative
-  double moment = 0;               ///< the worst beam end's moment off, by the largest
-  double rms = 0;                  ///< of them all
-  double rest_ms = 0;              ///< a step, median
-  double hit_ms = 0;               ///< the same after a hit
+  double sag = 0;                        ///< mean of the roof, m
+  double foot = 0;                       ///< the worst foot's force off, relative
+  double moment = 0;                     ///< the worst beam end's moment off, by the largest
+  double rms = 0;                        ///< of them all
+  double rest_ms = 0;                    ///< a step, median
+  double rest_least = 0, rest_most = 0;  ///< the 5th and the 95th of 100
+  double hit_ms = 0;                     ///< the same after a hit
   double steps = 0, failures = 0;  ///< before the hit; of those, steps a direct solver gave up
 };
 /// 3 s from a cold start (forces: the mean of the last 0.5 s), then 0.5 s from the hit of a ball,
