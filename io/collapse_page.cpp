@@ -15,16 +15,24 @@ std::string joint_name(const CollapseReport& report, std::uint32_t joint) {
 std::string lede_of(const CollapseReport& report) {
   const CollapseResult& r = report.result;
   const Frame& frame = report.scene.frame;
-  if (r.broken_joints.empty())
-    return "The building stands: in " + moment_text(r.simulated_s) + " none of its " +
-           count_text(frame.joints.size()) + " joints broke; the largest utilisation was " +
-           digits_text(r.max_utilisation) + ", and 1 breaks.";
-  const JointBreak& first = r.broken_joints.front();
-  return count_text(r.broken_joints.size()) + " of " + count_text(frame.joints.size()) +
-         " joints broke and " + count_text(r.parts_freed) + " of " +
-         count_text(frame.part_count()) + " parts came loose in " + moment_text(r.simulated_s) +
-         ". The first joint to go was " + joint_name(report, first.joint) + ", at " +
-         moment_text(first.time) + " (" + std::string(first.mode) + ").";
+  const std::string joints = count_text(frame.joints.size()), time = moment_text(r.simulated_s);
+  const auto first = std::ranges::find_if(
+      r.broken_joints, [](const JointBreak& each) { return each.mode != "removed"; });
+  if (first == r.broken_joints.end()) {
+    const std::string but =
+        r.broken_joints.empty()
+            ? ""
+            : joined({" but the ", count_text(r.broken_joints.size()), " of what was taken away"});
+    return joined({"The building stands: in ", time, " none of its ", joints, " joints broke", but,
+                   ". The largest utilisation was ", digits_text(r.max_utilisation),
+                   report.scene.rules.breaking ? "; 1 breaks."
+                                               : "; 1 would break, but joints were told to hold."});
+  }
+  return joined({count_text(r.broken_joints.size()), " of ", joints, " joints broke and ",
+                 count_text(r.parts_freed), " of ", count_text(frame.part_count()),
+                 " parts came loose in ", time, ". The first joint to go was ",
+                 joint_name(report, first->joint), ", at ", moment_text(first->time), " (",
+                 first->mode, ")."});
 }
 
 std::vector<Tile> tiles_of(const CollapseReport& report) {
@@ -43,8 +51,8 @@ std::vector<Tile> tiles_of(const CollapseReport& report) {
                          digits_text(r.crack_area) + " m² of cracks"});
   if (r.first_failure_load > 0)
     tiles.push_back(
-        {"load at first failure", quantity_text(r.first_failure_load, "N/m²"), "live load"});
-  tiles.push_back({"energy set free", quantity_text(std::max(0.0, -r.energy.potential), "J"),
+        {"load at first failure", digits_text(1e-3 * r.first_failure_load), "kN/m² of live load"});
+  tiles.push_back({"energy set free", quantity_text(energy_set_free(r.energy), "J"),
                    quantity_text(r.energy_in, "J") + " went in"});
   tiles.push_back({"a step", time_text(1e-3 * r.step_ms_median),
                    "95 % within " + time_text(1e-3 * r.step_ms_p95) + ", longest " +
@@ -94,7 +102,8 @@ void write_course(HtmlPage& page, const CollapseReport& report) {
        "stored where something broke, and new crack surface"},
       {"friction", e.friction, &RunSample::friction, "sliding"},
       {"contact", e.contact, &RunSample::contact, "crushing and blows that do not bounce"},
-      {"strain", e.strain, &RunSample::strain, "stored by what stands, beyond that at rest"},
+      {"strain", e.strain, &RunSample::strain,
+       "of what stands: elastic, and its weight as it sags"},
       {"damping", r.damping, &RunSample::damping, "of the ringing frame"},
       {"plastic", r.plastic, &RunSample::plastic, "bent joints"}};
   if (report.scene.simulation.solver == "bullet")

@@ -98,12 +98,15 @@ white-space:pre-wrap;overflow-wrap:anywhere}
 code,.mono{font:13px/1.5 ui-monospace,"SF Mono",Menlo,Consolas,"DejaVu Sans Mono",monospace}
 footer{max-width:1120px;margin:26px auto 0;padding:14px 28px 36px;color:var(--soft);font-size:13px;
 border-top:1px solid var(--rule)}
-@media (max-width:760px){main{padding:24px 16px 0}footer{padding:14px 16px 28px}h1{font-size:28px}
+@media screen and (max-width:760px){main{padding:24px 16px 0}footer{padding:14px 16px 28px}h1{font-size:28px}
 .lede{font-size:16px}.figures{grid-template-columns:minmax(0,1fr);gap:14px}
 .tiles{grid-template-columns:repeat(2,minmax(0,1fr))}.value{font-size:24px}figure{padding:12px}
 .plot text{font-size:15px}th,td{padding-right:12px}.w{min-width:9em}}
 @media print{:root{--paper:#fff}body{font-size:11px}main{max-width:none;padding:0}h1{font-size:26px}
-.lede{font-size:13px}.value{font-size:18px}section{padding:18px 0 0}figure,tr,.notice{break-inside:avoid}
+.lede{font-size:13px}.value{font-size:18px}.tiles{grid-template-columns:repeat(auto-fit,minmax(105px,1fr))}
+h2{font-size:15px}h3{font-size:12px}.badge{font-size:10px;line-height:15px}.figures{gap:10px}
+.plot text{font-size:15px}table{font-size:11px}td small,th,.label,.note,figcaption p,.legend{font-size:10px}
+th,td{padding:3px 12px 3px 0}section{padding:18px 0 0}figure,tr,.notice{break-inside:avoid}
 h2,figcaption{break-after:avoid}*{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )css";
 

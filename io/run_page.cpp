@@ -104,12 +104,16 @@ void write_accuracy(HtmlPage& page, double asked, std::span<const AccuracyRow> r
   page.close_section();
 }
 
+double energy_set_free(const EnergyLedger& energy) {
+  return std::max(0.0, -energy.potential) + std::max(0.0, -energy.strain);
+}
+
 AccuracyRow numerical_row(const EnergyLedger& energy, double energy_in) {
-  const double turned_over = std::abs(energy_in) + std::max(0.0, -energy.potential);
+  const double turned_over = std::abs(energy_in) + energy_set_free(energy);
   const double share = turned_over > 0 ? std::abs(energy.numerical) / turned_over : 0;
   return {"Numerical share of the energy", share_text(share), share,
-          "Energy that the books cannot place at the end, by what went in and what falling set "
-          "free. It should be next to nothing."};
+          "Energy that the books cannot place at the end, by what went in and what falling and "
+          "sagging set free. It should be next to nothing."};
 }
 
 AccuracyRow momentum_row(double error) {

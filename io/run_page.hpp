@@ -26,7 +26,9 @@ struct AccuracyRow {
 /// (name and value).
 void write_accuracy(HtmlPage& page, double asked, std::span<const AccuracyRow> rows,
                     std::span<const std::pair<std::string, std::string>> settings);
-/// Numerical energy by what was turned over: what went in and what falling set free.
+/// By falling, and by what stands, J.
+double energy_set_free(const EnergyLedger& energy);
+/// Numerical energy by what was turned over: what went in and what was set free.
 AccuracyRow numerical_row(const EnergyLedger& energy, double energy_in);
 AccuracyRow momentum_row(double error);
 AccuracyRow penetration_row(double depth);

@@ -144,6 +144,12 @@ TEST(ReportPage, AQuietRunSaysSo) {
   page = page_of(scene, result);
   expect_well_formed(page);
   EXPECT_FALSE(has(page, "<svg"));
+  scene.scenario.remove = {"post_0_0_0"};
+  scene.rules.breaking = false;
+  page = page_of(scene, simulate_collapse(scene));
+  EXPECT_TRUE(has(page, "joints broke but the "));
+  EXPECT_TRUE(has(page, "joints were told to hold"));
+  EXPECT_TRUE(has(page, "What broke first"));
 }
 
 TEST(ReportPage, OfAnAssetListsItsFaults) {
