@@ -20,7 +20,7 @@ struct Options {
   std::string made_scene;  ///< scene text made from --wall … or a model; empty: none
   bool is_model = false;   ///< the input is a model
   std::vector<std::filesystem::path> outputs;  ///< -o
-  std::filesystem::path report;                ///< --report; empty: none
+  std::vector<std::filesystem::path> reports;  ///< --report
   std::filesystem::path history;               ///< --history; empty: none
   std::optional<double> at;                    ///< --at, s
   std::optional<int> picture_width;            ///< --width, pixels
@@ -29,6 +29,7 @@ struct Options {
   int threads = 0;  ///< 0: as many as the machine has
   bool json = false, quiet = false, allow_outside = false;
   bool verbose = false;
+  std::string command;  ///< the line as a shell takes it
   bool no_skip = false;  ///< does all the work, to prove that the outcome is the same
 };
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "cli/command_line.hpp"
 #include "cli/command_table.hpp"
 #include "cli/options.hpp"
 #include "cli/outputs.hpp"
@@ -166,7 +167,9 @@ void check_values(const CLI::App& verb) {
 }
 
 void add_report_options(CLI::App& verb, Options& options) {
-  verb.add_option("--report", options.report, "Write the numbers of the run to this .json file")
+  one_value_each(verb.add_option(
+      "--report", options.reports,
+      "Write the numbers of the run to this file, repeatable: .json, or .html to read and print"))
       ->type_name("FILE");
   verb.add_flag("--json", options.json, "Print the report to standard output, and nothing else")
       ->disable_flag_override();
@@ -364,7 +367,7 @@ CLI::App& add_view(CLI::App& app, Options& options) {
 }
 
 void check_something_to_write(const Options& options, const std::string& verb) {
-  if (options.outputs.empty() && options.report.empty() && !options.json)
+  if (options.outputs.empty() && options.reports.empty() && !options.json)
     usage(verb + " has nothing to write: give -o FILE, --report FILE or --json");
 }
 
@@ -425,7 +428,7 @@ void finish_collapse(const Options& options) {
 void finish_check(const Options& options) {
   if (options.inputs.size() < 2) return;
   if (options.json) usage("--json prints one report, so check takes one file with it");
-  if (!options.report.empty()) usage("--report writes one report, so check takes one file with it");
+  if (!options.reports.empty()) usage("--report writes one report, so check takes one file with it");
 }
 
 void read_numbers(Options& options, const Given& given) {
@@ -462,6 +465,7 @@ bool parse(CLI::App& app, int argc, char** argv) {
 // The parser with what it fills in.
 struct CommandLine {
   Options options;
+  options.command = command_line(argc, argv);
   Given given;
   CLI::App app{
       "Breaks walls and solid models into closed, textured chunks with bonds, as glTF or OBJ, "

@@ -45,9 +45,13 @@ void check_suffix(const fs::path& path, const Options& options) {
           ": the suffix says the format, one of .glb .gltf .obj .stl .ply .svg .png .html .json");
 }
 
+bool is_page(const fs::path& path) {
+  return path.extension() == ".html";
+}
+
 std::vector<fs::path> written_files(const Options& options) {
   std::vector<fs::path> files = options.outputs;
-  if (!options.report.empty()) files.push_back(options.report);
+  files.insert(files.end(), options.reports.begin(), options.reports.end());
   if (!options.history.empty()) files.push_back(options.history);
   return files;
 }
@@ -56,8 +60,9 @@ std::vector<fs::path> written_files(const Options& options) {
 
 void check_outputs(const Options& options) {
   for (const fs::path& path : options.outputs) check_suffix(path, options);
-  if (!options.report.empty() && options.report.extension() != ".json")
-    usage("--report " + options.report.string() + ": a report is a .json file");
+  for (const fs::path& path : options.reports)
+    if (path.extension() != ".json" && !is_page(path))
+      usage("--report " + path.string() + ": a report is a .json or .html file");
   if (!options.history.empty() && !is_history_suffix(options.history.extension()))
     usage("--history " + options.history.string() + ": a history is a .csv or .json file");
   std::map<fs::path, fs::path> written;  // canonical → as given
@@ -78,11 +83,18 @@ void check_not_written(const Options& options, std::span<const fs::path> inputs)
   }
 }
 
-void write_report(const Options& options, std::string_view text) {
+void write_report(const Options& options, std::string_view text,
+                  const std::function<std::string()>& page) {
   if (options.json) std::fwrite(text.data(), 1, text.size(), stdout);
-  if (!options.report.empty()) write_file(options.report, text);
+  for (const fs::path& path : options.reports)
+    is_page(path) ? write_file(path, page()) : write_file(path, text);
   for (const fs::path& path : options.outputs)
     if (path.extension() == ".json") write_file(path, text);
+}
+
+PageSource page_source(const Options& options) {
+  return {options.inputs.empty() ? "a wall" : options.inputs.front().filename().string(),
+          options.command};
 }
 
 }  // namespace sunder

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "cli/options.hpp"
+#include "io/report_page.hpp"
 
 namespace sunder {
 
@@ -17,7 +20,12 @@ void check_outputs(const Options& options);
 /// whatever name: what a scene reads is known only after reading it.
 void check_not_written(const Options& options, std::span<const std::filesystem::path> inputs);
 
-/// Writes a report to where the command line wants it: --json, --report and every -o FILE.json.
-void write_report(const Options& options, std::string_view text);
+/// Writes a report to where the command line wants it: --json, every --report and -o FILE.json; the
+/// page is made if one is wanted.
+void write_report(const Options& options, std::string_view text,
+                  const std::function<std::string()>& page);
+
+/// What a report's page says of its origin.
+PageSource page_source(const Options& options);
 
 }  // namespace sunder

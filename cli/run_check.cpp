@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <string>
 
+#include "cli/outputs.hpp"
 #include "cli/print_soundness.hpp"
 #include "cli/progress.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
 #include "fracture/measure.hpp"
 #include "io/import.hpp"
-#include "io/output.hpp"
 #include "io/report.hpp"
 
 namespace sunder {
@@ -44,11 +44,10 @@ int run_check(const Options& options) {
     watch.lap("measure");
     report.times = watch.steps();
     if (!report.soundness.is_sound()) exit_code = kExitCheckFailed;
-    if (options.json)
-      std::fputs(report_json(report).c_str(), stdout);
-    else if (!options.quiet)
+    if (!options.json && !options.quiet)
       print_soundness(stdout, path, report.soundness, details_of(asset, report.soundness));
-    if (!options.report.empty()) write_file(options.report, report_json(report));
+    write_report(options, report_json(report),
+                 [&] { return soundness_page(report, page_source(options)); });
   }
   return exit_code;
 }

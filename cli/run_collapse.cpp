@@ -79,8 +79,10 @@ int run_collapse(const Options& options) {
   write_recording(result.recording, collapse.simulation, options);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  write_report(options, collapse_report_json({SUNDER_VERSION, collapse, result, took.count(),
-                                              watch.steps(), settings}));
+  const CollapseReport report{SUNDER_VERSION, collapse,      result,
+                              took.count(),   watch.steps(), settings};
+  write_report(options, collapse_report_json(report),
+               [&] { return collapse_page(report, page_source(options)); });
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
   if (options.quiet) return kExitOk;

@@ -212,7 +212,7 @@ int run_fracture(const Options& options) {
 
   const auto wants_report = [](const auto& path) { return path.extension() == ".json"; };
   const bool report_wanted =
-      options.json || !options.report.empty() || std::ranges::any_of(options.outputs, wants_report);
+      options.json || !options.reports.empty() || std::ranges::any_of(options.outputs, wants_report);
   const bool meshed = report_wanted || std::ranges::any_of(options.outputs, needs_meshes);
   MeshedAsset meshes = meshed ? mesh_asset(fractured.walls, threads, fractured.solids)
                               : MeshedAsset{fractured.walls, {}, fractured.solids, {}};
@@ -237,7 +237,8 @@ int run_fracture(const Options& options) {
     watch.lap("measure");
     report.times = watch.steps();
     report.skipped = skipped(fractured, meshed);
-    write_report(options, report_json(report));
+    write_report(options, report_json(report),
+                 [&] { return soundness_page(report, page_source(options)); });
     if (!report.soundness.is_sound()) {
       exit_code = kExitCheckFailed;
       print_soundness(stderr, "the asset", report.soundness);

@@ -83,9 +83,10 @@ int run_impact(const Options& options) {
     if (path.extension() != ".json") export_recording(result.recording, path, recording);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const std::string text = impact_report_json(
-      {SUNDER_VERSION, scene.seed, result, took.count(), watch.steps(), settings});
-  write_report(options, text);
+  const ImpactReport report{SUNDER_VERSION, scene.seed,    result,
+                            took.count(),   watch.steps(), settings};
+  write_report(options, impact_report_json(report),
+               [&] { return impact_page(report, page_source(options)); });
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
   if (!options.quiet) print_summary(result, scene, settings, options, watch);

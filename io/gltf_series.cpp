@@ -9,6 +9,10 @@
 namespace sunder {
 namespace {
 
+bool has_series(const GltfLayout& layout) {
+  return layout.recording && !layout.step && !layout.recording->series.empty();
+}
+
 /// A float32; what is none is null.
 void put_value(double value, GltfText& out) {
   const auto narrow = static_cast<float>(value);
@@ -119,10 +123,6 @@ void write_events(const Recording& recording, GltfText& out) {
 }
 
 }  // namespace
-
-bool has_series(const GltfLayout& layout) {
-  return layout.recording && !layout.step && !layout.recording->series.empty();
-}
 
 void write_series(const GltfLayout& layout, std::uint64_t first_part, GltfText& out) {
   if (!has_series(layout)) return;

@@ -8,8 +8,7 @@
 
 namespace sunder {
 
-/// Whether a file tells how its run went: one of a recording with a series, not of one moment.
-bool has_series(const GltfLayout& layout);
+// A file tells how its run went if it is of a recording with a series, and not of one moment.
 
 /// `,"extras":{"sunder":{"run":…,"joints":…,"events":…}}` of the document; "joints" where there are
 /// any. `first_part`: node of part 0.

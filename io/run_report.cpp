@@ -4,15 +4,12 @@
 #include "io/printable.hpp"
 
 namespace sunder {
-namespace {
 
-std::string hex_digits(std::uint64_t value) {
+std::string hash_text(std::uint64_t hash) {
   std::string digits(16, '0');
-  for (std::size_t i = 16; i-- > 0; value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
   return digits;
 }
-
-}  // namespace
 
 RunSettings run_settings(const Scene& scene, std::string_view job) {
   const ErrorFront& front = error_front(job);
@@ -83,7 +80,7 @@ void write_solves_and_hash(JsonLines& json, const SolveCounts& solves, std::uint
   json.count("update", solves.update);
   json.count("skipped", solves.skipped);
   json.close();
-  json.text("hash", hex_digits(hash));
+  json.text("hash", hash_text(hash));
 }
 
 void write_end(JsonLines& json, const std::vector<std::string>& warnings, const RunTimes& times) {

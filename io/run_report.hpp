@@ -53,6 +53,7 @@ void write_settings(JsonLines& json, const RunSettings& settings);
 /// The keys of "energy" that every run has, into an open object.
 void write_ledger(JsonLines& json, double energy_in, const EnergyLedger& energy);
 void write_projectiles(JsonLines& json, const std::vector<ProjectileOutcome>& projectiles);
+std::string hash_text(std::uint64_t hash);  ///< 16 hexadecimal digits
 /// "solves": zeros as long as there is no static solver; "hash": 16 hexadecimal digits.
 void write_solves_and_hash(JsonLines& json, const SolveCounts& solves, std::uint64_t hash);
 /// "warnings" and "time", the last keys of a report.

@@ -202,6 +202,7 @@ void CollapseRun::start() {
                !scene_.scenario.ground_motion.times.empty();
   remove_parts();
   launch_due();
+  sample_run();
 }
 
 void CollapseRun::remove_parts() {
@@ -378,14 +379,15 @@ void CollapseRun::record(double time) {
     if (shot.body != kNoBody)
       note(world_.is_awake(shot.body), shot.track, [&] { return world_.pose(shot.body); });
   if (panels_) panels_->record();
-  if (time + 1e-9 >= next_sample_) sample(time);
+  if (time + 1e-9 < next_sample_) return;
+  sample_run();
+  sample(time);
 }
 
 void CollapseRun::sample(double time) {
   next_sample_ = time + scene_.simulation.history_step;
   for (std::uint32_t j = 0; j < joints_.size(); ++j)
     if (joints_[j].intact) result_.joint_gap = std::max(result_.joint_gap, motion_->joint_gap(j));
-  sample_run();
   if (!params_.keep_history) return;
   all_known_ = false;
   const double last = sample_times_.empty() ? -1 : sample_times_.back();

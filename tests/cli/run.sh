@@ -580,6 +580,28 @@ END
 END
   expect_files "s.json w.json"
 }
+report_pages() {  # every verb writes one that loads nothing and names the command
+  cp "$source/data/scenes/window-shot.json" "a b.json"
+  local short="--set simulation.duration=0.1"
+  expect_exit 0 "$sunder" impact "a b.json" $short --report i.html --report i.json -q
+  expect_text i.html 'sunder impact &#39;a b.json&#39; --set simulation.duration=0.1 --report i.html'
+  expect_text i.html "$(grep -o '"hash": "[0-9a-f]*' i.json | cut -d'"' -f4)"
+  cp "$source/data/scenes/steel-frame.json" s.json
+  expect_exit 0 "$sunder" collapse s.json $short --report c.html -q
+  expect_text c.html "The building stands"
+  expect_exit 0 "$sunder" fracture $wall --report f.html -o f.glb -q
+  expect_exit 0 "$sunder" check f.glb --report k.html -q
+  for page in i c f k; do
+    expect_text $page.html "</html>"
+    ! grep -qE 'https?:|<script|src=' $page.html || fail "$page.html loads something"
+  done
+  expect_exit 2 "$sunder" impact "a b.json" --report i.htm
+  expect_text err "--report i.htm: a report is a .json or .html file"
+  expect_exit 2 "$sunder" impact "a b.json" --report i.html --report ./i.html
+  expect_text err "written twice"
+  expect_exit 2 "$sunder" check f.glb f.glb --report k.html
+  expect_text err "check takes one file with it"
+}
 schemas() {
   for which in scene material report impact-report collapse-report; do
     expect_exit 0 "$sunder" schema $which

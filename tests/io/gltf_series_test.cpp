@@ -45,13 +45,25 @@ std::vector<RunSample> random_series(std::size_t count) {
   return series;
 }
 
+constexpr const char* kPanel = "slab_0_0_0";  // broke into chunks
+
+std::uint32_t panel_of(const Recording& recording) {
+  return static_cast<std::uint32_t>(
+      std::ranges::find(recording.parts, kPanel, &RecordedPart::name) - recording.parts.begin());
+}
+
 Recording sample_run() {
   Recording recording = sample_building({.posts_x = 2, .posts_z = 3, .storeys = 2, .reach = 9});
   recording.series = random_series(12);
   recording.seed = 18446744073709551615u;
-  recording.parts[4].wall = 0;
   recording.walls.push_back({sample_wall("facade", 3, 2), std::vector<std::uint32_t>(6, kNoTrack)});
   recording.events = {{0.25, 0, {1, 2.5, -3}, 31.25, 1.5, 12, 3}};
+  const std::uint32_t panel = panel_of(recording);
+  recording.parts[panel].wall = 0;
+  RecordedJoint joint = recording.joints[3];
+  joint.name = "panel_joint", joint.part_b = joint.part_a, joint.part_a = panel, joint.end_a = 2;
+  recording.joints.push_back(joint);
+  recording.samples.assign(recording.sample_times.size() * recording.joints.size(), {});
   for (std::size_t i = 0; i < recording.samples.size(); ++i) {
     const double most = i % 7 == 0 ? 80 : 1.2;  // above 65.535 too
     recording.samples[i].utilisation = static_cast<float>(most * random_unit(3, i));
@@ -96,6 +108,7 @@ TEST(GltfSeries, JointsSayWhatTheyJoinAndWhenTheyBreak) {
   const Recording recording = sample_run();
   const Glb glb = written(recording);
   const Json& joints = glb.json["extras"]["sunder"]["joints"];
+  const std::uint32_t panel = panel_of(recording);
   std::size_t of_chunks = 0, of_ground = 0, broken = 0;
   for (std::size_t j = 0; j < recording.joints.size(); ++j) {
     const RecordedJoint& joint = recording.joints[j];
@@ -109,8 +122,8 @@ TEST(GltfSeries, JointsSayWhatTheyJoinAndWhenTheyBreak) {
     const std::uint32_t parts[] = {joint.part_a, joint.part_b};
     for (std::size_t k = 0; k < 2; ++k) {
       const long node = joints["parts"][j][k];
-      const bool has_node = parts[k] != kNoTrack && parts[k] != 4;
-      of_ground += parts[k] == kNoTrack, of_chunks += parts[k] == 4;
+      const bool has_node = parts[k] != kNoTrack && parts[k] != panel;
+      of_ground += parts[k] == kNoTrack, of_chunks += parts[k] == panel;
       EXPECT_EQ(node >= 0, has_node);
       if (!has_node) continue;
       EXPECT_EQ(glb.json["nodes"][static_cast<std::size_t>(node)]["name"],
@@ -137,9 +150,11 @@ TEST(GltfSeries, UtilisationsAreThousandthsUntilTheBreak) {
   for (std::size_t i = 0; i < recording.samples.size(); ++i) {
     const double used = static_cast<double>(recording.samples[i].utilisation);
     if (recording.sample_times[i / count] >= recording.joints[i % count].broken) {
-      EXPECT_EQ(values[i], 0), ++ended;
+      ++ended;
+      EXPECT_EQ(values[i], 0);
     } else if (used > 65.6) {
-      EXPECT_EQ(values[i], 65535), ++capped;
+      ++capped;
+      EXPECT_EQ(values[i], 65535);
     } else {
       EXPECT_NEAR(0.001 * values[i], std::min(used, 65.535), 0.0005001);
     }
