@@ -167,9 +167,9 @@ void check_values(const CLI::App& verb) {
 }
 
 void add_report_options(CLI::App& verb, Options& options) {
-  one_value_each(verb.add_option(
-      "--report", options.reports,
-      "Write the numbers of the run to this file, repeatable: .json, or .html to read and print"))
+  one_value_each(verb.add_option("--report", options.reports,
+                                 "Write the numbers of the run to this file, repeatable: .json, or "
+                                 ".html to read and print"))
       ->type_name("FILE");
   verb.add_flag("--json", options.json, "Print the report to standard output, and nothing else")
       ->disable_flag_override();
@@ -409,7 +409,9 @@ void finish_fracture(const CLI::App& verb, Options& options, Given& given) {
 void check_pictures(const Options& options) {
   const auto shows = [](const std::filesystem::path& path) { return path.extension() != ".json"; };
   if (options.at && std::ranges::none_of(options.outputs, shows))
-    usage("--at says which moment -o FILE.glb, .gltf, .obj, .svg or .png shows, and there is none");
+    usage(
+        "--at says which moment -o FILE.glb, .gltf, .obj, .svg, .png or .html shows, and there is "
+        "none");
   const auto is_png = [](const std::filesystem::path& path) { return path.extension() == ".png"; };
   if (options.picture_width && std::ranges::none_of(options.outputs, is_png))
     usage("--width is of -o FILE.png, and there is none");
@@ -428,7 +430,8 @@ void finish_collapse(const Options& options) {
 void finish_check(const Options& options) {
   if (options.inputs.size() < 2) return;
   if (options.json) usage("--json prints one report, so check takes one file with it");
-  if (!options.reports.empty()) usage("--report writes one report, so check takes one file with it");
+  if (!options.reports.empty())
+    usage("--report writes one report, so check takes one file with it");
 }
 
 void read_numbers(Options& options, const Given& given) {
@@ -465,7 +468,6 @@ bool parse(CLI::App& app, int argc, char** argv) {
 // The parser with what it fills in.
 struct CommandLine {
   Options options;
-  options.command = command_line(argc, argv);
   Given given;
   CLI::App app{
       "Breaks walls and solid models into closed, textured chunks with bonds, as glTF or OBJ, "
@@ -510,6 +512,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   CommandLine line;
   auto& [options, given, app, verbs] = line;
   if (!parse(app, argc, argv)) return {};
+  options.command = command_line(argc, argv);
 
   const CLI::App* const verb = app.get_subcommands().front();
   check_values(*verb);
