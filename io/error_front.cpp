@@ -80,7 +80,9 @@ ErrorChoice choose_settings(const ErrorFront& front, std::span<const std::string
 ErrorChoice expected_error(const ErrorFront& front, const SimulationParams& simulation) {
   constexpr std::string_view kAll[] = {"solver", "step", "iterations"};
   SimulationParams same = simulation;
-  return choose_settings(front, kAll, same);
+  ErrorChoice choice = choose_settings(front, kAll, same);
+  choice.is_asked = false;
+  return choice;
 }
 
 }  // namespace sunder

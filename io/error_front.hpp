@@ -33,6 +33,7 @@ const ErrorFront& error_front(std::string_view job);
 /// What `max_error` made of the settings that a scene leaves open.
 struct ErrorChoice {
   double asked = 0;                 ///< max_error
+  bool is_asked = true;             ///< false: the scene gives no max_error, nothing was chosen
   std::vector<std::string> chosen;  ///< keys of the simulation, by name; empty: none were open
   std::optional<double> expected;   ///< error of the measured point that is no finer than that
   bool is_met() const { return expected && *expected <= asked; }

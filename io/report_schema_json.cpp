@@ -294,6 +294,7 @@ constexpr ReportKey kCollapseSkippedKeys[] = {
 
 constexpr ReportKey kSettingKeys[] = {
     {"max_error", "number", "Relative error asked for."},
+    {"asked", "boolean", "Whether the scene gives it, or it is the default."},
     {"chosen", "array", "Keys of the simulation that were chosen for it."},
     {"step", "number", "Unit: s."},
     {"iterations", "integer", "Of the contact solver."},

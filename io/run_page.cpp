@@ -106,7 +106,8 @@ void write_accuracy(HtmlPage& page, double asked, std::span<const AccuracyRow> r
 
 AccuracyRow settings_row(const RunSettings& settings) {
   const std::optional<double>& expected = settings.choice.expected;
-  return {"Expected of the settings", expected ? share_text(*expected) : "not known", expected,
+  return {"Expected of the settings", expected ? share_text(*expected) : "not known",
+          settings.choice.is_asked ? expected : std::nullopt,
           "Measured with settings no finer than these: " + settings.front.error +
               ". Not in it: " + settings.front.not_in_it + "."};
 }

@@ -32,6 +32,7 @@ void write_settings(JsonLines& json, const RunSettings& settings) {
   const ErrorChoice& choice = settings.choice;
   json.open("settings", '{');
   json.number("max_error", choice.asked);
+  json.truth("asked", choice.is_asked);
   json.open("chosen", '[');
   for (const std::string& key : choice.chosen) json.text(key);
   json.close();

@@ -57,7 +57,7 @@ std::string sample_text(const ImpactResult& result) {
                              result,
                              1.75,
                              {{"simulate", 1.5}, {"write", 0.25}},
-                             {kSimulation, kFront, {0.05, {"step"}, 0.03}}});
+                             {kSimulation, kFront, {0.05, true, {"step"}, 0.03}}});
 }
 
 Json sample_json() {
@@ -77,7 +77,7 @@ TEST(ImpactReport, EveryNumberStandsUnderItsKey) {
   const Json expected = Json::parse(R"json({
     "version": "0.1.0", "seed": 7, "steps": 1200, "substeps": 1300, "simulated_s": 5.25,
     "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5},
-    "settings": {"max_error": 0.05, "chosen": ["step"], "step": 0.0078125, "iterations": 12,
+    "settings": {"max_error": 0.05, "asked": true, "chosen": ["step"], "step": 0.0078125, "iterations": 12,
                  "expected_error": 0.03, "met": true, "error_is": "of the \"sag\"",
                  "not_in_it": "the rest"}, "bodies": 31, "merged_bodies": 9,
     "chunks": 210, "chunks_freed": 32, "chunks_split": 3, "broken_joints": [], "broken_bonds": 77,

@@ -72,7 +72,7 @@ std::string page_of(const CollapseScene& scene, const CollapseResult& result) {
                         result,
                         3.5,
                         {{"simulate", 1.5}},
-                        {scene.simulation, error_front("collapse"), {0.01, {}, {}}}},
+                        {scene.simulation, error_front("collapse"), {0.01, false, {}, {}}}},
                        kSource);
 }
 
@@ -107,7 +107,7 @@ TEST(ReportPage, OfAnImpactSaysWhatBecameOfTheProjectile) {
                    result,
                    3.5,
                    {},
-                   {scene.simulation, error_front("impact"), {0.01, {"step"}, 0.004}}},
+                   {scene.simulation, error_front("impact"), {0.01, true, {"step"}, 0.004}}},
                   kSource);
   expect_well_formed(page);
   expect_self_contained(page);
