@@ -174,6 +174,18 @@ TEST(Png, OfARecordingIsItsStripOrTheMoment) {
   std::filesystem::remove(path);
 }
 
+TEST(Png, TooManyShapesAreRefusedBeforeTheyAreDrawn) {
+  std::string shapes;
+  for (int i = 0; i < kMostPictureElements; ++i) shapes += "<g/>";
+  try {
+    png_of(svg_of(1, 1, shapes), 64);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::output);
+    EXPECT_NE(std::string(error.what()).find("300001 shapes"), std::string::npos);
+  }
+}
+
 // --- a single picture
 
 std::string inside_of(const std::string& svg, std::size_t picture) {
