@@ -4,7 +4,7 @@
 # Needs BUILD, SOURCE, SCRATCH, TUTORIAL.
 file(REMOVE_RECURSE ${SCRATCH})
 # The text between ```<language> and ``` from a place on; sets <result> and <result>_after.
-function(block text language result)
+function(fenced_block text language result)
   string(FIND "${text}" "\n```${language}\n" begin)
   if(begin EQUAL -1)
     message(FATAL_ERROR "${TUTORIAL} has no block of ${language}")
@@ -20,8 +20,8 @@ function(block text language result)
   set(${result}_after "${after}" PARENT_SCOPE)
 endfunction()
 file(READ ${TUTORIAL} tutorial)
-block("${tutorial}" cpp program)
-block("${program_after}" "" printed)
+fenced_block("${tutorial}" cpp program)
+fenced_block("${program_after}" "" printed)
 file(WRITE ${SCRATCH}/tutorial.cpp "${program}")
 
 function(step)

@@ -17,11 +17,14 @@ ln -s "$sunder" bin/sunder
 PATH=$work/bin:$PATH
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-is_known() {  # the line's verb and the suffixes of its files
-  local verb
+is_known() {  # the line's verb and what its options write
+  local verb help
   verb=$(awk '{print $2}' <<< "$1")
   "$sunder" --help | grep -q "^  $verb " || return 1
-  [[ $1 != *.html* ]] || "$sunder" "$verb" --help | grep -qF .html
+  [ "$verb" = view ] && return
+  help=$("$sunder" "$verb" --help)
+  [[ ! $1 =~ --report\ [^\ ]*\.html ]] || grep -e --report <<< "$help" | grep -qF html || return 1
+  [[ ! $1 =~ -o\ [^\ ]*\.html ]] || grep -e --output <<< "$help" | grep -qF html
 }
 
 run() {  # line
