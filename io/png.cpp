@@ -16,6 +16,14 @@ const PngModule& png_module() {
   return *static_cast<const PngModule*>(module);
 }
 
+// Tags that open: what the time and memory to draw an SVG go by.
+std::size_t count_elements(std::string_view svg) {
+  std::size_t count = 0;
+  for (std::size_t at = svg.find('<'); at != std::string_view::npos; at = svg.find('<', at + 1))
+    count += at + 1 < svg.size() && svg[at + 1] != '/';
+  return count;
+}
+
 }  // namespace
 
 std::string png_of(std::string_view svg, int width) {
@@ -23,6 +31,13 @@ std::string png_of(std::string_view svg, int width) {
     throw Error(ErrorCode::usage, "a picture's width of " + std::to_string(width) +
                                       " pixels is outside [" + std::to_string(kLeastPictureWidth) +
                                       ", " + std::to_string(kMostPictureWidth) + "]");
+  }
+  const std::size_t elements = count_elements(svg);
+  if (elements > kMostPictureElements) {
+    throw Error(ErrorCode::output, "a picture of " + std::to_string(elements) +
+                                       " shapes is more than a .png can be made of, " +
+                                       std::to_string(kMostPictureElements) +
+                                       "; write an .svg, or fewer chunks");
   }
   PngModule::Png png = png_module().render(svg, width, kMostPictureWidth);
   if (!png.error.empty()) {

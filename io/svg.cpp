@@ -24,6 +24,8 @@ constexpr std::uint64_t kMostExploded = 5000;
 constexpr double kSpread = 0.22;    // how far chunks move away from the centre, of their distance
 constexpr Vec2 kDepth{0.42, 0.30};  // where the z axis points on paper, back of the wall
 constexpr double kMillimetres = 1000;
+// A page higher than this, of its width, has its oblique views beside the flat ones.
+constexpr double kSteepest = 2;
 
 using Colour = std::array<double, 3>;  // sRGB, 0 … 255
 
@@ -311,10 +313,15 @@ Column column_of(const SolidPicture& picture) {
   return column;
 }
 
-void draw_solid(const SolidPicture& picture, const Column& column, double left, double flat_floor,
-                double oblique_floor, Paper& paper) {
+// Where a column's two pictures stand: left edges and floors.
+struct Places {
+  double flat_left = 0, flat_floor = 0, oblique_left = 0, oblique_floor = 0;
+};
+
+void draw_solid(const SolidPicture& picture, const Column& column, const Places& places,
+                Paper& paper) {
   const double scale = kMillimetres * picture.unit;
-  const auto draw = [&](const std::string& text, double width, double floor) {
+  const auto draw = [&](const std::string& text, double width, double left, double floor) {
     if (text.empty()) return;
     paper.text("<g transform=\"translate(");
     paper.point({left + 0.5 * (column.width - scale * width), floor});
@@ -325,8 +332,8 @@ void draw_solid(const SolidPicture& picture, const Column& column, double left, 
     paper.text(text);
     paper.text("</g>\n");
   };
-  draw(picture.whole, picture.whole_size.x, flat_floor);
-  draw(picture.exploded, picture.exploded_size.x, oblique_floor);
+  draw(picture.whole, picture.whole_size.x, places.flat_left, places.flat_floor);
+  draw(picture.exploded, picture.exploded_size.x, places.oblique_left, places.oblique_floor);
 }
 
 void draw_name(const std::string& name, Vec2 at, double size, Paper& paper) {
@@ -343,11 +350,11 @@ void draw_name(const std::string& name, Vec2 at, double size, Paper& paper) {
   paper.text("</text>\n");
 }
 
-void draw_wall(const WallAsset& wall, const Column& column, double left, double flat_floor,
-               double oblique_floor, Paper& paper) {
+void draw_wall(const WallAsset& wall, const Column& column, const Places& places, Paper& paper) {
   const double line = std::clamp(0.012 * cell_size(wall, column.box), 0.1, 6.0);
   const Vec2 size = kMillimetres * (column.box.high - column.box.low);
-  const Placing flat{column.box.low, {left + 0.5 * (column.width - size.x), flat_floor}};
+  const Placing flat{column.box.low,
+                     {places.flat_left + 0.5 * (column.width - size.x), places.flat_floor}};
   paper.text("<g>\n");
   draw_cells(wall, flat, line, paper);
   draw_border(wall, flat, line, paper);
@@ -356,9 +363,9 @@ void draw_wall(const WallAsset& wall, const Column& column, double left, double 
   paper.text("</g>\n");
   if (column.oblique_height == 0) return;
   const MaterialLook look = look_of(wall.wall.material);
-  const double corner = left + column.margin + 0.5 * kSpread * size.x;
+  const double corner = places.oblique_left + column.margin + 0.5 * kSpread * size.x;
   const Oblique view{wall,
-                     {column.box.low, {corner, oblique_floor - 0.5 * kSpread * size.y}},
+                     {column.box.low, {corner, places.oblique_floor - 0.5 * kSpread * size.y}},
                      0.5 * (column.box.low + column.box.high),
                      colour_of(look.outer),
                      colour_of(look.inner)};
@@ -400,8 +407,12 @@ std::string draw_svg(const Asset& asset, std::span<const SolidAsset> solids) {
   // One ground line for all, whatever each one's own margin.
   double margin = 0;
   for (const Column& column : columns) margin = std::max(margin, column.margin);
+  const bool is_beside = oblique > 0 && flat + oblique > kSteepest * width;
+  const double across = is_beside ? 2 : 1;  // pictures of a column side by side
+  width *= across;
   const double letters = 0.018 * std::max(width, flat);
-  const double height = flat + oblique + 2.4 * letters;
+  const double bottom = is_beside ? std::max(flat, oblique + margin) : flat + oblique;
+  const double height = bottom + 2.4 * letters;
   Paper paper;
   paper.text("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ");
   paper.point({width, height});
@@ -411,15 +422,17 @@ std::string draw_svg(const Asset& asset, std::span<const SolidAsset> solids) {
     const Column& column = columns[w];
     const bool is_wall = w < asset.walls.size();
     const std::size_t solid = w - asset.walls.size();
-    const double oblique_floor = flat + oblique - 0.3 * margin;
+    const Places places = is_beside
+                              ? Places{left, bottom - margin, left + column.width, bottom - margin}
+                              : Places{left, flat - margin, left, bottom - 0.3 * margin};
     if (is_wall) {
-      draw_wall(asset.walls[w], column, left, flat - margin, oblique_floor, paper);
+      draw_wall(asset.walls[w], column, places, paper);
     } else {
-      draw_solid(pictures[solid], column, left, flat - margin, oblique_floor, paper);
+      draw_solid(pictures[solid], column, places, paper);
     }
     draw_name(is_wall ? asset.walls[w].wall.name : solids[solid].solid.name,
-              {left + 0.5 * column.width, height - letters}, letters, paper);
-    left += column.width;
+              {left + 0.5 * across * column.width, height - letters}, letters, paper);
+    left += across * column.width;
   }
   paper.text("</svg>\n");
   return paper.take();

@@ -1,7 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the build tree into a scratch folder and builds and runs a program against it.
-# Needs BUILD, SOURCE, SCRATCH.
+# So does the program in the engine tutorial, which prints what the tutorial says.
+# Needs BUILD, SOURCE, SCRATCH, TUTORIAL.
 file(REMOVE_RECURSE ${SCRATCH})
+# The text between ```<language> and ``` from a place on; sets <result> and <result>_after.
+function(fenced_block text language result)
+  string(FIND "${text}" "\n```${language}\n" begin)
+  if(begin EQUAL -1)
+    message(FATAL_ERROR "${TUTORIAL} has no block of ${language}")
+  endif()
+  string(LENGTH "\n```${language}\n" fence)
+  math(EXPR begin "${begin} + ${fence}")
+  string(SUBSTRING "${text}" ${begin} -1 rest)
+  string(FIND "${rest}" "```" length)
+  string(SUBSTRING "${rest}" 0 ${length} inside)
+  math(EXPR end "${begin} + ${length} + 3")
+  string(SUBSTRING "${text}" ${end} -1 after)
+  set(${result} "${inside}" PARENT_SCOPE)
+  set(${result}_after "${after}" PARENT_SCOPE)
+endfunction()
+file(READ ${TUTORIAL} tutorial)
+fenced_block("${tutorial}" cpp program)
+fenced_block("${program_after}" "" printed)
+file(WRITE ${SCRATCH}/tutorial.cpp "${program}")
+
 function(step)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -10,7 +32,20 @@ function(step)
 endfunction()
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
 step(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja
-     -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DCMAKE_CXX_FLAGS=${FLAGS})
+     -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DTUTORIAL=${SCRATCH}/tutorial.cpp -DCMAKE_CXX_FLAGS=${FLAGS})
 step(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 step(${SCRATCH}/build/consumer ${SCRATCH}/wall.glb)
 step(${SCRATCH}/prefix/bin/sunder check ${SCRATCH}/wall.glb)
+execute_process(COMMAND ${SCRATCH}/build/tutorial WORKING_DIRECTORY ${SCRATCH}
+                OUTPUT_VARIABLE output RESULT_VARIABLE result)
+if(NOT result EQUAL 0 OR NOT output STREQUAL printed)
+  message(FATAL_ERROR "the tutorial's program prints\n${output}instead of\n${printed}")
+endif()
+step(${SCRATCH}/prefix/bin/sunder check ${SCRATCH}/level.glb)
+foreach(file man/man1/sunder.1 bash-completion/completions/sunder zsh/site-functions/_sunder
+             fish/vendor_completions.d/sunder.fish)
+  file(READ ${SCRATCH}/prefix/share/${file} text LIMIT 1000)
+  if(NOT text MATCHES "Printed by|printed by")
+    message(FATAL_ERROR "${file} is not what the program prints")
+  endif()
+endforeach()

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +21,7 @@
 #include "io/sample_recording.hpp"
 #include "io/strip_steps.hpp"
 #include "io/strip_svg.hpp"
+#include "io/svg.hpp"
 #include "meshing/error.hpp"
 #include "meshing/level_set_module.hpp"
 
@@ -174,7 +176,38 @@ TEST(Png, OfARecordingIsItsStripOrTheMoment) {
   std::filesystem::remove(path);
 }
 
-// --- a single picture
+TEST(Png, TooManyShapesAreRefusedBeforeTheyAreDrawn) {
+  std::string shapes;
+  for (int i = 0; i < kMostPictureElements; ++i) shapes += "<g/>";
+  try {
+    png_of(svg_of(1, 1, shapes), 64);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::output);
+    EXPECT_NE(std::string(error.what()).find("300001 shapes"), std::string::npos);
+  }
+}
+
+// --- pages of an asset, and a single picture
+
+// Height by width of the page of a wall of so many cells of 0.5 m.
+double steepness_of(std::uint32_t columns, std::uint32_t rows) {
+  Asset asset;
+  asset.walls.push_back(sample_wall("pier", columns, rows));
+  const std::string svg = draw_svg(asset);
+  double width = 0, height = 0;
+  EXPECT_EQ(
+      std::sscanf(svg.c_str() + svg.find("viewBox"), "viewBox=\"0 0 %lf %lf\"", &width, &height),
+      2);
+  return height / width;
+}
+
+TEST(Svg, AHighWallHasItsPicturesSideBySideAndAWideOneBelowEachOther) {
+  EXPECT_GT(steepness_of(12, 6), 2 * 0.5) << "two of 1 : 2 below each other";
+  EXPECT_GT(steepness_of(6, 6), 1.5);
+  EXPECT_LT(steepness_of(4, 6), 1.5 * 6 / 4) << "two of 3 : 2 side by side";
+  EXPECT_LT(steepness_of(2, 12), 0.7 * 6);
+}
 
 std::string inside_of(const std::string& svg, std::size_t picture) {
   std::size_t at = 0;
