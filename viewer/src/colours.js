@@ -69,12 +69,11 @@ export class Colours {
     if (this.hasSizes) this.sizes = logRange(sized.map((part) => part[this.sizeKey]));
     this.speeds = new Float32Array(parts.length);
     this.topSpeed = 0;
-    this.hasLoads = model.motion.isLit || (model.utilisation !== null && parts.some((part) => part.kind === "member"));
     this.modes = [
       { id: "material", label: "Material", has: true },
       { id: "chunk", label: "Chunk", has: true },
       { id: "size", label: "Size", has: this.hasSizes, why: "sizes of parts" },
-      { id: "utilisation", label: "Utilisation", has: this.hasLoads, why: "loads of joints", changes: true },
+      { id: "utilisation", label: "Utilisation", has: model.motion.isLit, why: "loads of joints", changes: true },
       { id: "speed", label: "Speed", has: model.motion.movers.length > 0, why: "motion", changes: true },
     ];
   }
@@ -127,8 +126,11 @@ export class Colours {
     if (id === "utilisation")
       return swatches([["#e81e16", "force"], ["#1cb034", "torque"], ["#ffd000", "both"], ["#1c54f5", "joint broken"], ["#8b93a1", "no load"]]);
     if (id === "material") {
-      const own = model.geometry.materials.filter((m, i) => model.geometry.lists[i].length > 0);
-      return swatches(own.map((m) => [css(m.colour), m.name.replaceAll("_", " ")]));
+      const { materials, lists, colour } = model.geometry;
+      // A white material takes its look from the colours of vertices.
+      const ownColour = (m, [first]) => m.colour.map((c, k) => c * (colour ? colour[4 * first + k] / 255 : 1));
+      const own = materials.map((m, i) => [m, lists[i]]).filter(([, list]) => list.length > 0);
+      return swatches(own.map(([m, list]) => [css(ownColour(m, list)), m.name.replaceAll("_", " ")]));
     }
     return document.createDocumentFragment();
   }

@@ -103,8 +103,8 @@ export class Graph {
     const first = 2 * this.model.bonds.length;
     for (const joint of joints) {
       const value = utilisationAt(utilisation, joint, time);
-      dots.array[joint.index] = value;
-      lines.array.fill(value, first + 4 * joint.index, first + 4 * joint.index + 4);
+      dots.array[joint.slot] = value;
+      lines.array.fill(value, first + 4 * joint.slot, first + 4 * joint.slot + 4);
     }
     dots.needsUpdate = lines.needsUpdate = true;
   }

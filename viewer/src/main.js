@@ -251,7 +251,9 @@ class Page {
     if (!this.model) return;
     const box = $("view").getBoundingClientRect();
     const x = event.clientX - box.left, y = event.clientY - box.top;
-    this.select(this.jointAt(x, y) ?? (await this.world.picker.at(x, y)));
+    const number = (this.clicks = (this.clicks ?? 0) + 1);
+    const thing = this.jointAt(x, y) ?? (await this.world.picker.at(x, y));
+    if (number === this.clicks) this.select(thing);
   }
 
   jointAt(x, y) {

@@ -94,11 +94,11 @@ function readBonds(gltf, walls) {
   return bonds;
 }
 
-function readJoints(gltf, parts, motion) {
+function readJoints(gltf, parts) {
   const table = gltf.json.extras?.sunder?.joints;
   if (!table?.names?.length || !table.parts || !table.points) return [];
   const byNode = new Map(parts.map((part) => [part.node, part]));
-  return table.names.map((name, index) => {
+  const joints = table.names.map((name, index) => {
     const [a, b] = table.parts[index].map((node) => (node === kGround ? null : byNode.get(node) ?? null));
     const joint = { index, name, a, b, ends: table.ends?.[index] ?? [], point: table.points[index], broken: table.broken?.[index] ?? Infinity };
     for (const part of [a, b]) {
@@ -109,16 +109,18 @@ function readJoints(gltf, parts, motion) {
       (joint.local ??= new Map()).set(part, unplace(state, 0, ...joint.point, [0, 0, 0]));
     }
     return joint;
-  });
+  }).filter((joint) => joint.local);
+  joints.forEach((joint, slot) => (joint.slot = slot));
+  return joints;
 }
 
 /** Utilisation of all joints over time; null: the file has none. */
-function readUtilisation(gltf, jointCount) {
+function readUtilisation(gltf) {
   const table = gltf.json.extras?.sunder?.joints;
   const block = table?.utilisation;
-  if (!block || !table.times?.length || jointCount === 0) return null;
+  if (!block || !table.times?.length) return null;
   const rows = gltf.numbers(block.bufferView, block.componentType ?? 5123);
-  return { times: Float64Array.from(table.times), rows, scale: block.scale ?? 0.001, jointCount };
+  return { times: Float64Array.from(table.times), rows, scale: block.scale ?? 0.001, jointCount: table.names.length };
 }
 
 /** The utilisation of a joint at the sample at or after a time. */
@@ -200,13 +202,13 @@ export function readModel(gltf, report) {
     if (part.kind === "part" && box) part.centroid = [0, 1, 2].map((k) => (box[k] + box[k + 3]) / 2);
   }
   const motion = new Motion(gltf, parts);
-  const joints = readJoints(gltf, parts, motion);
+  const joints = readJoints(gltf, parts);
   const sunder = gltf.json.extras?.sunder ?? {};
   const scene = gltf.json.scenes?.[gltf.json.scene ?? 0]?.extras?.sunder ?? {};
   const model = {
     gltf, parts, walls, geometry, motion, joints, report, scene,
-    bonds: readBonds(gltf, walls), utilisation: readUtilisation(gltf, joints.length),
-    run: sunder.run ?? null, events: sunder.events ?? [],
+    bonds: readBonds(gltf, walls), utilisation: readUtilisation(gltf),
+    run: sunder.run?.times ? sunder.run : null, events: sunder.events ?? [],
     explode: explodeWays(parts, motion), box: boxOf(parts, motion, geometry),
   };
   model.ground = groundHeight(model);

@@ -28,8 +28,7 @@ function countCharts(model, duration) {
   if (hasValues(run?.broken_joints)) lines.push({ label: "joints", times: run.times, values: run.broken_joints });
   else if (broken.some(Number.isFinite)) lines.push({ label: "joints", ...countOf(broken, duration) });
   if (hasValues(run?.broken_bonds)) lines.push({ label: "bonds", times: run.times, values: run.broken_bonds });
-  const isTwo = lines.length === 2;
-  return lines.map((line) => ({ title: isTwo ? `Broken ${line.label}` : `Broken ${line.label}`, unit: "", isStep: true, lines: [line] }));
+  return lines.map((line) => ({ title: `Broken ${line.label}`, unit: "", isStep: true, lines: [line] }));
 }
 
 /** Charts, and what there was nothing for. */
@@ -37,7 +36,7 @@ export function chartsOf(model) {
   const { run, motion } = model;
   const charts = countCharts(model, motion.duration);
   const missing = [];
-  if (charts.length === 0) missing.push("broken joints");
+  if (charts.length === 0) missing.push("what broke");
   if (hasValues(run?.max_utilisation))
     charts.push({ title: "Largest utilisation", unit: "", limit: 1, lines: [{ label: "utilisation", times: run.times, values: run.max_utilisation }] });
   else missing.push("utilisation");

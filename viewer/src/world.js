@@ -59,7 +59,7 @@ export class World {
 
   light() {
     this.sky = new HemisphereLight(0xffffff, 0x8a8f9a, 1.75);
-    this.sun = new DirectionalLight(0xfff4e2, 2.7);
+    this.sun = new DirectionalLight(0xfff4e2, 2.5);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.shade = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new ShadowMaterial({ opacity: 0.26, depthWrite: false }));
@@ -216,7 +216,7 @@ export class World {
     const tall = Math.tan((camera.fov * Math.PI) / 360) * 0.86, wide = tall * camera.aspect;
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
-      const p = new Vector3(...[0, 1, 2].map((k) => (corner & (1 << k) ? box.high[k] : box.low[k]))).sub(middle);
+      const p = new Vector3(...[0, 1, 2].map((k) => (corner & (1 << k) ? box.high[k] : box.low[k]))).sub(middle).multiplyScalar(1 + this.uniforms.explode.value);
       const need = Math.max(Math.abs(p.dot(right)) / wide, Math.abs(p.dot(up)) / tall);
       distance = Math.max(distance, need + p.dot(direction));
     }
@@ -274,10 +274,12 @@ export class World {
     this.refreshShadows();
   }
 
-  /** Where a joint is in the canvas, CSS pixels; null: behind the camera. */
+  /** Where a joint is in the canvas, CSS pixels; null: behind the camera, or with its parts not there. */
   onScreen(joint) {
-    const part = joint.a ?? joint.b;
     const { model, renderer, camera } = this;
+    const isThere = (part) => part && model.motion.state[part.index * kStateSize + 3] > 1e-6;
+    const part = [joint.a, joint.b].find(isThere);
+    if (!part) return null;
     const at = place(model.motion.state, part.index * kStateSize, ...joint.local.get(part), [0, 0, 0]);
     for (let k = 0; k < 3; ++k) at[k] += this.uniforms.explode.value * model.explode[3 * part.index + k];
     const seen = new Vector3(...at).project(camera);
