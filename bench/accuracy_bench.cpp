@@ -6,13 +6,14 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "bench/peers.hpp"
+#include "bench/report.hpp"
 #include "fracture/asset.hpp"
 #include "fracture/chunk_mesh.hpp"
 #include "fracture/measure.hpp"
 #include "fracture/voronoi.hpp"
 #include "meshing/error.hpp"
 #include "meshing/random.hpp"
-#include "peers.hpp"
 
 namespace {
 
@@ -42,6 +43,7 @@ Wall varied_wall(std::uint64_t seed, double jitter) {
 }
 
 void sweep_walls() {
+  const Block block("accuracy walls");
   std::printf(
       "| jitter | walls | chunks | volume in memory | volume in files | unpaired edges | "
       "open | not manifold | unmatched | overlaps |\n|---|---|---|---|---|---|---|---|---|---|\n");
@@ -106,6 +108,7 @@ Wall touching_wall(std::uint64_t seed) {
 }
 
 void sweep_touching() {
+  const Block block("accuracy touching");
   int unsound = 0;
   constexpr int kWalls = 4000;
   for (std::uint64_t seed = 1; seed <= kWalls; ++seed) {
@@ -113,7 +116,7 @@ void sweep_touching() {
     const RenderMeshes meshes = render_meshes(asset);
     unsound += !measure({soup_of(asset, meshes)}).is_sound();
   }
-  std::printf("\n| walls with touching openings | not sound in float32 |\n|---|---|\n| %d | %d |\n",
+  std::printf("| walls with touching openings | not sound in float32 |\n|---|---|\n| %d | %d |\n",
               kWalls, unsound);
 }
 
@@ -141,8 +144,9 @@ double area_difference(const Pattern& pattern, const Lattice& lattice, const Pol
 }
 
 void compare_peers() {
+  const Block block("accuracy peers");
   std::printf(
-      "\n| 100 × 100 cells, jitter | certified | exact | worst area against CGAL | against voro++ "
+      "| 100 × 100 cells, jitter | certified | exact | worst area against CGAL | against voro++ "
       "|\n"
       "|---|---|---|---|---|\n");
   for (const double jitter : {1.0, 0.9, 0.66, 0.3}) {
@@ -170,8 +174,9 @@ bool leaves_window(const Pattern& pattern, const Sites& sites, std::uint32_t c) 
 }
 
 void count_windows() {
+  const Block block("accuracy windows");
   std::printf(
-      "\n| four walls of 1000 × 1000 cells, jitter | cells a ±2 window gets wrong | expected |\n"
+      "| four walls of 1000 × 1000 cells, jitter | cells a ±2 window gets wrong | expected |\n"
       "|---|---|---|\n");
   const struct {
     double jitter;
@@ -216,8 +221,9 @@ void print_moments(const Moments& m, const char* name, const char* expected) {
 }
 
 void statistics() {
+  const Block block("accuracy statistics");
   std::printf(
-      "\n| 4e6 cells | var A / A² | mean sides | var sides | known: var A, var sides |\n"
+      "| 4e6 cells | var A / A² | mean sides | var sides | known: var A, var sides |\n"
       "|---|---|---|---|---|\n");
   const struct {
     double jitter;

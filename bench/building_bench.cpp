@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/peers_bullet.hpp"
+#include "bench/report.hpp"
 #include "sim/collapse.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/step_times.hpp"
@@ -147,11 +148,6 @@ void print(const std::string& name, const Run& run, double after) {
   for (double from = hit; from < recording.times.back() - step; from += after / 5)
     print(name + ", " + std::to_string(from - hit).substr(0, 4) + " s after the hit",
           steps(from, from + after / 5, false), bodies_at(recording, from + after / 10));
-  const CollapseResult& r = run.result;
-  std::printf("| %s: hash %016llx, %llu substeps, %llu chunks, %llu bodies at the end |\n",
-              name.c_str(), static_cast<unsigned long long>(r.hash),
-              static_cast<unsigned long long>(r.substeps),
-              static_cast<unsigned long long>(r.chunks), static_cast<unsigned long long>(r.bodies));
 }
 
 void measure_bullet() {
@@ -209,7 +205,7 @@ void alone(const std::string& name, const std::function<void()>& work) {
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);
-  std::printf("| %s: at most %.0f MB%s |\n", name.c_str(),
+  std::printf("| %s: peak of memory, MB | | | | %.0f%s | |\n", name.c_str(),
               static_cast<double>(usage.ru_maxrss) / 1024, status == 0 ? "" : ", FAILED");
 }
 
@@ -219,12 +215,17 @@ void alone(const std::string& name, const std::function<void()>& work) {
 int main(int argc, char** argv) {
   using namespace sunder;
   const double after = argc > 1 ? std::atof(argv[1]) : 10.5;
-  std::printf(
-      "| | steps | median ms | p95 ms | longest ms | bodies |\n|---|---|---|---|---|---|\n");
-  if (after > 0) alone("as needed", [&] { print("as needed", run(0.6 + after, true), after); });
-  if (after > 0 && after < 2) return 0;
-  if (after > 0)
+  const char* header =
+      "| | steps | median ms | p95 ms | longest ms | bodies |\n|---|---|---|---|---|---|\n";
+  if (after > 0) {
+    const Block block("building steps");
+    std::printf("%s", header);
+    alone("as needed", [&] { print("as needed", run(0.6 + after, true), after); });
     alone("everything active", [&] { print("everything active", run(0.6 + 0.5, false), 0.5); });
-  if (after > 0) alone("Bullet", [] { measure_bullet(); });
-  for (const std::uint32_t most : {0u, 100u}) alone("heap", [&] { measure_heap(most); });
+    alone("plain Bullet", [] { measure_bullet(); });
+  }
+  const Block block("building heap");
+  std::printf("%s", header);
+  for (const std::uint32_t most : {0u, 100u})
+    alone("heap, at most " + std::to_string(most) + " that may move", [&] { measure_heap(most); });
 }

@@ -27,40 +27,31 @@ double step_once(FrameWorld& world, const Method& method, int number);
 
 /// Building at rest. Flat, for it comes through a pipe from a child process.
 struct Rest {
-  double sag_mean = 0, sag_max = 0;          ///< of the tops after the first half, m
-  double sag_mean_end = 0, sag_max_end = 0;  ///< at the end, m
-  double off = 0;                            ///< largest sag or rise of a top, at the end, m
-  double gap = 0;                            ///< widest at the end, m
-  double sum = 0;                            ///< base reactions, mean of the second half, N
-  double corner = 0, centre = 0;             ///< of these posts; the corners' mean, N
-  double overloaded = 0, utilisation = 0;    ///< joints at or over 1; largest, at the end
-  double ever_overloaded = 0;                ///< joints over 1 in any step
-  double beam_moment = 0;                    ///< largest M_y of a beam's end, N m
-  double step_ms = 0;                        ///< median
-  double start_ms = 0;                       ///< all of the first `kPrimedSteps` steps
+  double sag_mean = 0, sag_max = 0;            ///< of the tops after the first half, m
+  double sag_mean_end = 0, sag_max_end = 0;    ///< at the end, m
+  double off = 0;                              ///< largest sag or rise of a top, at the end, m
+  double gap = 0;                              ///< widest at the end, m
+  double sum = 0;                              ///< base reactions, mean of the second half, N
+  double corner = 0, centre = 0;               ///< of these posts; the corners' mean, N
+  double overloaded = 0, utilisation = 0;      ///< joints at or over 1; largest, at the end
+  double ever_overloaded = 0;                  ///< joints over 1 in any step
+  double beam_moment = 0;                      ///< largest M_y of a beam's end, N m
+  double step_ms = 0;                          ///< median
+  double step_ms_least = 0, step_ms_most = 0;  ///< the 5th and the 95th of 100
+  double start_ms = 0;                         ///< all of the first `kPrimedSteps` steps
   double steps = 0, fallbacks = 0;
 };
 /// Ends early when `budget_s` of wall time is used up.
 Rest rest(const Frame& frame, const Method& method, double seconds, double budget_s = 1e9);
 
 /// Largest utilisation of joint `j` of the frame by a reaction on its part a.
-double utilisation_of(const Frame& frame, std::uint32_t j, const Reaction& reaction);
+double utilisation_of(const Frame& frame, std::uint32_t j, const PartReaction& reaction);
 
-/// Sag against solver settings: tables, and the plot as SVG if `plot` is not empty.
-void measure_rest(const std::string& plot);
+/// Sag against solver settings: tables and the plot.
+void measure_rest(bool is_long);
 /// Dantzig's and Lemke's direct solvers on few storeys.
 void measure_direct_solvers();
 /// Columns, cantilevers, buckling, strength rules, removal of a post against closed forms.
 void measure_closed_forms();
-
-/// One point of the plot: sag and time of a method.
-struct SagPoint {
-  std::string method, label;
-  double sag = 0;       ///< or rise, largest, m
-  double ms = 0;        ///< per simulated second
-  bool failed = false;  ///< no steady state within the run
-  bool quoted = false;
-};
-std::string sag_plot(const std::vector<SagPoint>& points);
 
 }  // namespace sunder

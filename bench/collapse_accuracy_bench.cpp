@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables of frame buildings in docs/accuracy.md and docs/performance.md: sag, forces and cost
 // against Bullet itself, closed forms, a hit, and how far one collapse can be trusted.
-// Usage: bench_collapse_accuracy [rest|direct|forms|hit|trust] [--plot FILE]
+// Usage: bench_collapse_accuracy [rest|direct|forms|hit|trust] [long]
+// long: 1000 iterations at rest too, 20 starts instead of 8
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "bench/collapse_accuracy.hpp"
+#include "bench/report.hpp"
 #include "meshing/random.hpp"
 #include "sim/step_times.hpp"
 #include "tests/sim/frames.hpp"
@@ -125,8 +127,8 @@ void time_collapse(const Method& method) {
 }
 
 void measure_hit() {
+  const Block block("collapse_accuracy hit");
   std::printf(
-      "\n## A hit: 4 × 5 posts, 6 storeys, an 888 kg ball of 0.3 m at 40 m/s\n\n"
       "| method | step | iterations | phase | median ms | p95 ms | longest ms | pictures of 1/60 s "
       "per second | joints broken |\n|---|---|---|---|---|---|---|---|---|\n");
   using enum Method::Engine;
@@ -156,11 +158,10 @@ CollapseScene hit_scene(double factor) {
 }
 
 /// The ball starts up to a micrometre aside.
-void scatter(double factor) {
-  constexpr int kRuns = 20;
+void scatter(double factor, int runs) {
   Range freed, broken, fall;
   std::vector<int> times_broken;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(runs); ++seed) {
     CollapseScene scene = hit_scene(factor);
     const auto aside = [&](std::uint64_t n) { return 1e-6 * (2 * random_unit(seed, n) - 1); };
     scene.projectiles[0].position =
@@ -175,8 +176,8 @@ void scatter(double factor) {
   const auto some =
       times_broken.size() - static_cast<std::size_t>(std::ranges::count(times_broken, 0));
   std::printf("| × %.0f | %d | %.0f … %.0f | %.0f … %.0f | %td of %zu | %.3f … %.3f |\n", factor,
-              kRuns, freed.least, freed.most, broken.least, broken.most,
-              std::ranges::count(times_broken, kRuns), some, fall.least, fall.most);
+              runs, freed.least, freed.most, broken.least, broken.most,
+              std::ranges::count(times_broken, runs), some, fall.least, fall.most);
   std::fflush(stdout);
 }
 
@@ -190,8 +191,9 @@ void print_choice(const char* what, const CollapseScene& scene) {
 
 /// The same hit where something is chosen otherwise that is not in the drawing.
 void choices(double factor) {
+  const Block block(factor > 1 ? "collapse_accuracy choices-strong" : "collapse_accuracy choices");
   std::printf(
-      "\n| strength × %.0f | parts freed of %u | joints broken | before the hit | potential "
+      "| strength × %.0f | parts freed of %u | joints broken | before the hit | potential "
       "energy, "
       "MJ |\n|---|---|---|---|---|\n",
       factor, hit_scene(factor).frame.part_count());
@@ -221,13 +223,14 @@ void choices(double factor) {
   print_choice("post rule unbraced", other);
 }
 
-void measure_trust() {
-  std::printf(
-      "\n## How far one collapse can be trusted\n\n"
-      "| strength | runs | parts freed after 1.5 s | joints broken | broken in all runs, of those "
-      "broken in any | potential energy, MJ |\n|---|---|---|---|---|---|\n");
-  scatter(1);
-  scatter(2);
+void measure_trust(bool is_long) {
+  {
+    const Block block("collapse_accuracy scatter");
+    std::printf(
+        "| strength | runs | parts freed after 1.5 s | joints broken | broken in all runs, of "
+        "those broken in any | potential energy, MJ |\n|---|---|---|---|---|---|\n");
+    for (const double factor : {1, 2}) scatter(factor, is_long ? 20 : 8);
+  }
   choices(1);
   choices(2);
 }
@@ -236,19 +239,17 @@ void measure_trust() {
 }  // namespace sunder
 
 int main(int count, char** values) {
-  std::string part, plot;
-  for (int i = 1; i < count; ++i) {
-    const std::string value = values[i];
-    if (value == "--plot" && i + 1 < count) {
-      plot = values[++i];
-    } else {
-      part = value;
-    }
-  }
+  std::string part;
+  bool is_long = false;
+  for (int i = 1; i < count; ++i)
+    if (std::string(values[i]) == "long")
+      is_long = true;
+    else
+      part = values[i];
   const auto wanted = [&](const char* name) { return part.empty() || part == name; };
-  if (wanted("rest")) sunder::measure_rest(plot);
+  if (wanted("rest")) sunder::measure_rest(is_long);
   if (wanted("direct")) sunder::measure_direct_solvers();
   if (wanted("forms")) sunder::measure_closed_forms();
   if (wanted("hit")) sunder::measure_hit();
-  if (wanted("trust")) sunder::measure_trust();
+  if (wanted("trust")) sunder::measure_trust(is_long);
 }

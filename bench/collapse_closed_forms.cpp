@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bench/collapse_accuracy.hpp"
+#include "bench/report.hpp"
 #include "sim/buckling.hpp"
 #include "tests/sim/frames.hpp"
 #include "tests/sim/plastic_blocks.hpp"
@@ -31,7 +32,7 @@ std::vector<Method> methods_of_cases() {
 
 /// Load of the base joint: its mean over the second half of 10 s; descent of the top at the end.
 struct Held {
-  Reaction base;
+  PartReaction base;
   double sag = 0;
 };
 Held hold(const Assembly& assembly, const Method& method) {
@@ -41,7 +42,7 @@ Held hold(const Assembly& assembly, const Method& method) {
   for (int i = 0; i < steps; ++i) {
     step_once(*world, method, i);
     if (2 * i < steps) continue;
-    const Reaction now = world->reaction(0);
+    const PartReaction now = world->reaction(0);
     const double share = 1.0 / (steps - steps / 2);
     held.base.force = held.base.force + share * now.force;
     held.base.torque = held.base.torque + share * now.torque;
@@ -61,8 +62,8 @@ void static_loads() {
         (kPosts - k) * kPostMass * kGravity * kPostHeight / (steel.youngs_modulus * post.area);
   const double weight = kPosts * kPostMass * kGravity, shear = kBoxes * kBoxMass * kGravity;
   const double moment = shear * kLength / 2;
+  const Block block("collapse_accuracy statics");
   std::printf(
-      "\n## Statics: what a base joint carries, and sag\n\n"
       "| method | step | iterations | column: base force off %.0f N | its top sags, mm (elastic "
       "HEB200: %.2f) | cantilever: shear off %.0f N | moment off %.0f N m | torque about the "
       "body's "
@@ -114,8 +115,8 @@ double force_at_failure(double height, const std::string& rule, std::string& mod
 }
 
 void buckling() {
+  const Block block("collapse_accuracy buckling");
   std::printf(
-      "\n## Buckling: HEB200, S235\n\n"
       "| free length | N_b,Rd by EN 1993-1-1, curve c, kN | independently | simulated rising load: "
       "force in the sample before the first failure, kN | off | what failed first | Euler load, kN "
       "| of that of 3.5 m |\n|---|---|---|---|---|---|---|---|\n");
@@ -147,12 +148,9 @@ double moment_beside(const Section& section, double axial) {
 void strength_rules() {
   const Section section = with_properties(
       {.name = "HEB200", .shape = "i", .height = 0.2, .width = 0.2, .web = 0.009, .flange = 0.015});
-  std::printf(
-      "\n## Strength: N and M_y together, HEB200 of plates\n\n"
-      "How far each rule lets a joint go, against fully plastic stress blocks, over 17 directions "
-      "from 5° (nearly N alone) to 85° (nearly M alone).\n\n"
-      "| rule | least | most | M/M_pl at N/N_pl = 0.5 (exact: %.4f) |\n|---|---|---|---|\n",
-      moment_beside(section, 0.5));
+  const Block block("collapse_accuracy rules");
+  std::printf("| rule | least | most | M/M_pl at N/N_pl = 0.5 (exact: %.4f) |\n|---|---|---|---|\n",
+              moment_beside(section, 0.5));
   const SteelGrade steel{.name = "s235"};
   for (const std::string_view name : {"box", "ellipsoid", "linear", "ec3-i"}) {
     const JointStrength strength = section_strength(section, steel, interaction_named(name));
@@ -196,12 +194,8 @@ FootLoad foot_load(const CollapseResult& r, const Frame& frame, const std::strin
 }
 
 void removed_posts() {
+  const Block block("collapse_accuracy removal");
   std::printf(
-      "\n## A post taken away: how far its neighbours' forces overshoot\n\n"
-      "4 × 5 posts, 6 storeys, joints that hold; 1/240 s, 30 iterations, settled for 3 s, then 3 "
-      "s. "
-      "Overshoot: (peak − before) / (after − before), of a single step and of the mean over "
-      "`load_time` that joints are judged by.\n\n"
       "| removed | its load kN | neighbour | before kN | after kN | overshoot, single step | mean "
       "over 0.02 s | elastic frame: deflection, neighbours' forces "
       "|\n|---|---|---|---|---|---|---|---"

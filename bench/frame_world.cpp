@@ -44,7 +44,7 @@ class RigidFrame final : public FrameWorld {
     const PartSolid& solid = assembly_.parts[part];
     return world_.pose(bodies_[part]) * into(solid.axes, stood - solid.centre);
   }
-  Reaction reaction(std::uint32_t joint) const override {
+  PartReaction reaction(std::uint32_t joint) const override {
     const JointReaction found = world_.joint_reaction(joints_[joint]);
     const Assembly::Joint& j = assembly_.joints[joint];
     const Vec3 arm = into(j.axes, j.point - assembly_.parts[j.a].centre);

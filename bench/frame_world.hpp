@@ -37,7 +37,7 @@ Assembly column_of(int count, double mass, double height);
 Assembly cantilever_of(int count, double mass, double length);
 
 /// What a joint gives part a, in the joint's axes.
-struct Reaction {
+struct PartReaction {
   Vec3 force;             ///< N
   Vec3 torque;            ///< about the joint's point, N m
   Vec3 torque_at_centre;  ///< about part a's centre of mass, N m
@@ -52,7 +52,7 @@ class FrameWorld {
   virtual void add_ball(const Projectile& ball) = 0;
   /// Where a point of a part is that stood at `stood`, world.
   virtual Vec3 place(std::uint32_t part, Vec3 stood) const = 0;
-  virtual Reaction reaction(std::uint32_t joint) const = 0;  ///< in the last step
+  virtual PartReaction reaction(std::uint32_t joint) const = 0;  ///< in the last step
   virtual double gap(std::uint32_t joint) const = 0;         ///< between the two sides, m
   virtual std::uint64_t fallbacks() const = 0;  ///< steps in which a direct solver gave up
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The elastic solver of frame buildings against statics, dynamics and rigid bodies: the tables of
 // "The elastic solver" in docs/accuracy.md and docs/performance.md.
-// Usage: bench_hybrid [statics|dynamics|precision|updates|splits|steps]
+// Usage: bench_hybrid [statics|dynamics|precision|updates|splits|steps|work]
 #include "bench/hybrid_bench.hpp"
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <map>
 #include <numeric>
 
+#include "bench/report.hpp"
 #include "fracture/support_graph.hpp"
 #include "meshing/random.hpp"
 #include "sim/frame_solver.hpp"
@@ -237,8 +238,9 @@ void print_split(const Size& size, std::uint32_t compare_every) {
 }  // namespace
 
 void measure_statics() {
+  const Block block("hybrid statics");
   std::printf(
-      "\n## At rest\n\n| building | shear | sag of the roof, most / mean mm | expected | foot of "
+      "| building | shear | sag of the roof, most / mean mm | expected | foot of "
       "corner / edge x / edge z / inner post kN | worst foot against its line | all feet against "
       "weight | residual |\n|---|---|---|---|---|---|---|---|\n");
   print_statics({3, 3, 12}, false, "10.975 / 5.539");
@@ -250,8 +252,9 @@ void measure_statics() {
 }
 
 void measure_updates() {
+  const Block block("hybrid updates");
   std::printf(
-      "\n## Broken joints: update against factoring anew\n\n| building | joints broken | way | "
+      "| building | joints broken | way | "
       "update ms, least / median | solve ms, least / median | solver made anew ms, least | "
       "displacements off | joint forces off |\n|---|---|---|---|---|---|---|---|\n");
   for (const Size& size : {Size{3, 3, 12}, Size{4, 5, 6}, Size{10, 10, 30}}) {
@@ -264,8 +267,9 @@ void measure_updates() {
 }
 
 void measure_splits() {
+  const Block block("hybrid splits");
   std::printf(
-      "\n## What came loose: joints broken one by one in random order\n\n| building | joints | "
+      "| building | joints | "
       "median µs | p99 µs | worst µs | union-find, all anew, median µs | parts told wrong "
       "|\n|---|---|---|---|---|---|---|\n");
   print_split({3, 3, 12}, 1);
@@ -277,10 +281,13 @@ void measure_splits() {
 
 int main(int count, char** values) {
   const std::string part = count > 1 ? values[1] : "";
-  const std::pair<const char*, void (*)()> all[] = {
-      {"statics", sunder::measure_statics},     {"dynamics", sunder::measure_dynamics},
-      {"precision", sunder::measure_precision}, {"updates", sunder::measure_updates},
-      {"splits", sunder::measure_splits},       {"steps", sunder::measure_steps}};
+  const std::pair<const char*, void (*)()> all[] = {{"statics", sunder::measure_statics},
+                                                    {"dynamics", sunder::measure_dynamics},
+                                                    {"precision", sunder::measure_precision},
+                                                    {"updates", sunder::measure_updates},
+                                                    {"splits", sunder::measure_splits},
+                                                    {"steps", sunder::measure_steps},
+                                                    {"work", sunder::measure_work}};
   for (const auto& [name, measure] : all)
     if (part.empty() || part == name) measure();
 }

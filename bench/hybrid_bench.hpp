@@ -57,5 +57,6 @@ void measure_updates();
 void measure_splits();
 void measure_precision();
 void measure_dynamics();
+void measure_work();
 
 }  // namespace sunder

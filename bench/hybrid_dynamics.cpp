@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/hybrid_bench.hpp"
+#include "bench/report.hpp"
 #include "sim/frame_solver.hpp"
 #include "tests/sim/stocked_frame.hpp"
 
@@ -119,8 +120,9 @@ void print_case(const Size& size, const char* post, const char* expected) {
 }  // namespace
 
 void measure_dynamics() {
+  const Block block("hybrid dynamics");
   std::printf(
-      "\n## A post taken away from the elastic frame\n\n| post | deflection above it, static → "
+      "| post | deflection above it, static → "
       "largest mm, no shear | factor | reference: mm, factor; moment, foot | with shear | factor | "
       "beam end's moment, before "
       "→ "

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bench/collapse_accuracy.hpp"
 #include "bench/hybrid_bench.hpp"
+#include "bench/report.hpp"
+#include "bench/standing_precision.hpp"
 #include "sim/frame_solver.hpp"
 #include "sim/step_times.hpp"
 
@@ -14,13 +15,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60, kAtRest = 3, kMean = 0.5;  // s
 
-/// The elastic frame, shear on.
-struct Truth {
-  double sag = 0;              ///< mean of the roof, m
-  std::vector<double> foot;    ///< by joint, N; 0: none
-  std::vector<double> moment;  ///< by joint, M_y of beams' ends, N m
-  double largest_moment = 0;
-};
+}  // namespace
 
 Truth truth_of(const Frame& frame) {
   FrameSolver solver(frame);
@@ -40,23 +35,25 @@ Truth truth_of(const Frame& frame) {
   return truth;
 }
 
+namespace {
+
 /// Errors of feet and beam ends, from sums of reactions.
-void print_errors(const Frame& frame, const Truth& truth, const std::vector<Reaction>& sums,
-                  double count) {
-  double foot = 0, most = 0, squares = 0, beams = 0;
+void note_errors(const Frame& frame, const Truth& truth, const std::vector<PartReaction>& sums,
+                 double count, RigidStanding& found) {
+  double squares = 0, beams = 0;
   for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
     const FrameJoint& joint = frame.joints[j];
     if (joint.b == kNoPart)
-      foot = std::max(foot, std::fabs((joint.axes * sums[j].force).y / count / truth.foot[j] - 1));
+      found.foot = std::max(found.foot,
+                            std::fabs((joint.axes * sums[j].force).y / count / truth.foot[j] - 1));
     if (joint.kind != FrameJoint::Kind::beam_end) continue;
     const double side = joint.end_a == 1 ? 1 : -1;
-    const double off = side * sums[j].torque.y / count - truth.moment[j];
-    most = std::max(most, std::fabs(off));
+    const double off = (side * sums[j].torque.y / count - truth.moment[j]) / truth.largest_moment;
+    found.moment = std::max(found.moment, std::fabs(off));
     squares += off * off;
     ++beams;
   }
-  std::printf(" %.0f %% | %.0f %% / %.0f %% |", 100 * foot, 100 * most / truth.largest_moment,
-              100 * std::sqrt(squares / beams) / truth.largest_moment);
+  found.rms = std::sqrt(squares / beams);
 }
 
 Projectile ball() {
@@ -68,33 +65,54 @@ Projectile ball() {
   return p;
 }
 
-void print_rigid(const Size& size, const Frame& frame, const Truth& truth, const Method& method) {
+}  // namespace
+
+RigidStanding stand(const Frame& frame, const Truth& truth, const Method& method, double budget_s) {
   const Assembly assembly = assembly_of(frame);
   const auto world = frame_world(assembly, method);
   const int steps = static_cast<int>(std::lround(kAtRest / method.step));
   const int taken = static_cast<int>(std::lround(kMean / method.step));
   std::vector<double> rest, rings;
-  std::vector<Reaction> sums(assembly.joints.size());
-  for (int i = 0; i < steps; ++i) {
+  std::vector<PartReaction> sums(assembly.joints.size());
+  double used = 0, count = 0;
+  for (int i = 0; i < steps && used < 1e3 * budget_s; ++i) {
     rest.push_back(step_once(*world, method, i));
-    if (i < steps - taken) continue;
+    used += rest.back();
+    const bool is_last = i + 1 == steps || used >= 1e3 * budget_s;
+    if (i < steps - taken && !is_last) continue;
+    ++count;
     for (std::uint32_t j = 0; j < sums.size(); ++j) {
-      const Reaction now = world->reaction(j);
+      const PartReaction now = world->reaction(j);
       sums[j].force = sums[j].force + now.force;
       sums[j].torque = sums[j].torque + now.torque;
     }
   }
-  double sag = 0;
+  RigidStanding found;
   for (const Assembly::Top& top : assembly.tops)
-    sag += (top.stood.y - world->place(top.part, top.stood).y) /
-           static_cast<double>(assembly.tops.size());
+    found.sag += (top.stood.y - world->place(top.part, top.stood).y) /
+                 static_cast<double>(assembly.tops.size());
+  note_errors(frame, truth, sums, count, found);
+  found.rest_ms = percentile(rest, 0.5);
+  found.rest_least = percentile(rest, 0.05);
+  found.rest_most = percentile(rest, 0.95);
+  found.steps = static_cast<double>(rest.size());
+  found.failures = static_cast<double>(world->fallbacks());
+  if (used >= 1e3 * budget_s) return found;
   world->add_ball(ball());
   for (int i = 0; i < taken; ++i) rings.push_back(step_once(*world, method, steps + i));
-  std::printf("| %s | %s | %d | 1/%.0f s | %.3g (%+.3g) |", name_of(size).c_str(),
-              name_of(method).c_str(), method.iterations, 1 / method.step, 1e3 * sag,
-              1e3 * (sag - truth.sag));
-  print_errors(frame, truth, sums, taken);
-  std::printf(" %.3g | %.3g |\n", percentile(rest, 0.5), percentile(rings, 0.5));
+  found.hit_ms = percentile(rings, 0.5);
+  return found;
+}
+
+namespace {
+
+void print_rigid(const Size& size, const Frame& frame, const Truth& truth, const Method& method) {
+  const RigidStanding r = stand(frame, truth, method);
+  std::printf(
+      "| %s | %s | %d | 1/%.0f s | %.3g (%+.3g) | %.0f %% | %.0f %% / %.0f %% | %.3g | %.3g |\n",
+      name_of(size).c_str(), name_of(method).c_str(), method.iterations, 1 / method.step,
+      1e3 * r.sag, 1e3 * (r.sag - truth.sag), 100 * r.foot, 100 * r.moment, 100 * r.rms, r.rest_ms,
+      r.hit_ms);
   std::fflush(stdout);
 }
 
@@ -121,8 +139,9 @@ void print_hybrid(const Size& size, const Frame& frame, const Truth& truth, doub
 }  // namespace
 
 void measure_precision() {
+  const Block block("hybrid precision");
   std::printf(
-      "\n## Work against precision\n\n| building | method | iterations | step | mean sag mm (off) "
+      "| building | method | iterations | step | mean sag mm (off) "
       "| worst foot off | beam ends' moments off by the largest: worst / rms | standing ms a step "
       "| "
       "hit or ringing ms a step |\n|---|---|---|---|---|---|---|---|---|\n");

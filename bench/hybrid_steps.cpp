@@ -7,6 +7,7 @@
 
 #include "bench/collapse_accuracy.hpp"
 #include "bench/hybrid_bench.hpp"
+#include "bench/report.hpp"
 #include "sim/frame_solver.hpp"
 #include "sim/step_times.hpp"
 
@@ -161,8 +162,9 @@ void measure(const Size& size, std::size_t debris, int runs) {
 }  // namespace
 
 void measure_steps() {
+  const Block block("hybrid steps");
   std::printf(
-      "\n## A step\n\n| building | step | least ms | median ms | p95 ms | longest ms | Bullet, 200 "
+      "| building | step | least ms | median ms | p95 ms | longest ms | Bullet, 200 "
       "iterations, by this (medians) |\n|---|---|---|---|---|---|---|\n");
   measure({3, 3, 12}, 26, 15);
   measure({4, 5, 6}, 64, 15);

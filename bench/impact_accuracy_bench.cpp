@@ -2,6 +2,7 @@
 // The impact tables of docs/accuracy.md: bodies alone against closed forms, whole shots against
 // conservation and published formulas, scatter, and the sweep that looks for failures.
 // Usage: bench_impact_accuracy
+// [world|work|ledger|limits|residuals|formulas|polygons|cracks|scatter|sleep| sweep]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "bench/impact_accuracy.hpp"
+#include "bench/report.hpp"
 #include "fracture/spiderweb.hpp"
 #include "meshing/random.hpp"
 #include "meshing/triangulate.hpp"
@@ -31,8 +33,8 @@ double milliseconds_of(const ImpactScene& scene, ImpactResult& result) {
 
 // The energy ledger of one shot, over steps and iterations.
 void ledger() {
+  const Block block("impact_accuracy ledger");
   std::printf(
-      "\n## A whole shot: ledger and work against precision\n\n"
       "| wall | step | iterations | kinetic + potential | cracks | friction | contact | numerical "
       "| "
       "momentum error | peak | lost / (G_f A) | freed kg | ms per simulated s |\n"
@@ -99,8 +101,8 @@ double least_speed(ImpactScene& scene, double low, double high, const Predicate&
 }
 
 void ballistic_limits() {
+  const Block block("impact_accuracy limits");
   std::printf(
-      "\n## Concrete: the simulated limit in the band of the formulas\n\n"
       "| C30, 4.11 kg ball ⌀100 mm, thickness | NDRC | Hughes | CEA-EDF | UKAEA | breaks from | in "
       "the band | is behind it within 0.1 s from |\n|---|---|---|---|---|---|---|---|\n");
   for (const double thickness : {0.1, 0.15, 0.25, 0.4}) {
@@ -123,7 +125,6 @@ void ballistic_limits() {
 }
 
 void residual_speeds() {
-  print_accuracy_header();
   Shot shot = light_shot(0.1);
   const double limit = run(shot).projectiles[0].ballistic_speed;
   for (const double ratio : {1.05, 1.2, 1.5, 2.0, 3.0, 5.0}) {
@@ -175,8 +176,9 @@ void iris() {
 
 // Four shots that were computed independently, as printed (mm, m/s).
 void worked_shots() {
+  const Block block("impact_accuracy formulas");
   std::printf(
-      "\n| depth / perforation / scabbing in mm, limit in m/s | NDRC x / e / s | Hughes x / e / s "
+      "| depth / perforation / scabbing in mm, limit in m/s | NDRC x / e / s | Hughes x / e / s "
       "| "
       "CEA-EDF e, V | UKAEA x / s, V | digits that differ from the independent ones |\n"
       "|---|---|---|---|---|---|\n");
@@ -266,8 +268,8 @@ std::pair<bool, bool> look_at(const Pattern& p, int n) {
 }
 
 void damage_polygons() {
+  const Block block("impact_accuracy polygons");
   std::printf(
-      "\n## The damage polygon round an impact\n\n"
       "| corners | hit outside, plain draw | known | ours | convex, plain draw (radii 0.8 … 1) | "
       "known | ours |\n|---|---|---|---|---|---|---|\n");
   const struct {
@@ -325,7 +327,7 @@ double mean_cracks(double speed, double thickness, double mass, double radius) {
 }
 
 void radial_cracks() {
-  std::printf("\n## Radial cracks\n");
+  const Block block("impact_accuracy cracks");
   print_accuracy_header();
   const Material& pmma = find_material(builtin_materials(), "pmma");
   double sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0, points = 0;
@@ -408,7 +410,7 @@ std::vector<Vec3> standing_places(const ImpactScene& scene) {
 
 void print_difference_header(const char* what) {
   std::printf(
-      "\n| %s | residual speed m/s | freed kg | bonds broken | centre of the debris off | landing "
+      "| %s | residual speed m/s | freed kg | bonds broken | centre of the debris off | landing "
       "points off: median | 95 %% | most |\n|---|---|---|---|---|---|---|---|\n",
       what);
 }
@@ -513,8 +515,9 @@ void sleep_or_not() {
 }
 
 void sweep_stability() {
+  const Block block("impact_accuracy sweep");
   std::printf(
-      "\n## The sweep for failures\n\n| axis | cells | failures | seconds |\n"
+      "| axis | cells | failures | seconds |\n"
       "|---|---|---|---|\n");
   std::vector<std::string> faults;
   for (const auto& cells :
@@ -534,32 +537,46 @@ void sweep_stability() {
                 cells[0].material, cells.size(), failures, took.count());
     std::fflush(stdout);
   }
-  std::printf("\n");
   for (const std::string& fault : faults) std::printf("* %s\n", fault.c_str());
 }
 
-void measure_shots() {
-  ledger();
-  ballistic_limits();
+void measure_residuals() {
+  const Block block("impact_accuracy residuals");
+  print_accuracy_header();
   residual_speeds();
   iris();
-  worked_shots();
-  damage_polygons();
-  radial_cracks();
-  std::printf("\n## How far one shot scatters\n");
+}
+
+void measure_scatter() {
+  const Block block("impact_accuracy scatter");
   print_difference_header("514 kg at 10 m/s on 3 × 2 × 0.2 m of C30, 2 s");
   scatter(0);
   scatter(1);
   scatter_over_steps();
+}
+
+void measure_sleep() {
+  const Block block("impact_accuracy sleep");
   print_difference_header("the same for 4 s");
   sleep_or_not();
-  sweep_stability();
 }
 
 }  // namespace
 }  // namespace sunder
 
-int main() {
-  sunder::measure_rigid_world();
-  sunder::measure_shots();
+int main(int count, char** values) {
+  using namespace sunder;
+  const std::pair<std::string, void (*)()> parts[] = {{"world", measure_rigid_world},
+                                                      {"work", measure_engines},
+                                                      {"ledger", ledger},
+                                                      {"limits", ballistic_limits},
+                                                      {"residuals", measure_residuals},
+                                                      {"formulas", worked_shots},
+                                                      {"polygons", damage_polygons},
+                                                      {"cracks", radial_cracks},
+                                                      {"scatter", measure_scatter},
+                                                      {"sleep", measure_sleep},
+                                                      {"sweep", sweep_stability}};
+  for (const auto& [name, measure] : parts)
+    if (count < 2 || name == values[1]) measure();
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/peers_bullet.hpp"
+#include "bench/report.hpp"
 #include "fracture/support_graph.hpp"
 #include "io/impact_scene.hpp"
 #include "sim/impact.hpp"
@@ -54,6 +55,7 @@ ImpactResult best_run(const ImpactScene& scene, bool skip) {
 }
 
 void compare_steps() {
+  const Block block("impact steps");
   std::printf(
       "| chunks | method | median ms | p95 ms | longest ms | steps |\n"
       "|---|---|---|---|---|---|\n");
@@ -98,8 +100,9 @@ std::vector<std::uint32_t> bonds_near(const WallAsset& wall, Vec3 centre, double
 }
 
 void compare_islands() {
+  const Block block("impact islands");
   std::printf(
-      "\n| chunks | chunks freed | bounded search µs | whole graph µs | graph built anew µs "
+      "| chunks | chunks freed | bounded search µs | whole graph µs | graph built anew µs "
       "| chunks searched |\n|---|---|---|---|---|---|\n");
   for (const int size : {300, 3000, 30000, 300000}) {
     const ImpactScene scene = scene_of(size);

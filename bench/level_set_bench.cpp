@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bench/report.hpp"
 #include "meshing/level_set.hpp"
 #include "meshing/sample_solids.hpp"
 #include "meshing/surface_defects.hpp"
@@ -44,6 +45,7 @@ void measure(const char* name, const TriMesh& given, TriMesh (*surface)(const Le
 }  // namespace
 
 int main() {
+  const Block block("level_set orders");
   std::printf(
       "| solid | voxel, m | triangles | volume error | order | Hausdorff, m | order | in voxels | "
       "sound | s |\n|---|---|---|---|---|---|---|---|---|---|\n");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/report.hpp"
 #include "sim/chunk_network.hpp"
 
 namespace {
@@ -158,21 +159,44 @@ Errors deep_beam(double thickness, int cells, std::uint64_t seed) {
   return {w / exact - 1, 0, 0};
 }
 
-void print(const char* name, double thickness, Errors (*errors)(double, int, std::uint64_t)) {
-  for (const int cells : {5, 10, 20, 40}) {
-    double mean[3] = {}, worst[3] = {};
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      const Errors e = errors(thickness, cells, seed);
-      const double each[3] = {e.deflection, e.edge_moment, e.centre_moment};
-      for (int i = 0; i < 3; ++i) {
-        mean[i] += each[i] / kSeeds;
-        worst[i] = std::max(worst[i], std::abs(each[i]));
-      }
+struct Scatter {
+  double mean = 0, worst = 0;
+};
+
+/// Of one kind of error over the seeds.
+Scatter scatter(Errors (*errors)(double, int, std::uint64_t), double Errors::*kind,
+                double thickness, int cells) {
+  Scatter found;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const double each = errors(thickness, cells, seed).*kind;
+    found.mean += each / kSeeds;
+    found.worst = std::max(found.worst, std::abs(each));
+  }
+  return found;
+}
+
+void measure_errors() {
+  const struct {
+    const char* name;
+    Errors (*errors)(double, int, std::uint64_t);
+    double Errors::*kind;
+  } rows[] = {{"hinged: deflection", hinged_plate, &Errors::deflection},
+              {"hinged: moment in the middle", hinged_plate, &Errors::centre_moment},
+              {"clamped: deflection", clamped_plate, &Errors::deflection},
+              {"clamped: moment in the middle", clamped_plate, &Errors::centre_moment},
+              {"clamped: edge moment", clamped_plate, &Errors::edge_moment},
+              {"cantilever 4 × 1 m across its plane", cantilever, &Errors::deflection},
+              {"the same in its plane (deep beam)", deep_beam, &Errors::deflection},
+              {"racking of 3 × 3 m", racking, &Errors::deflection}};
+  const Block block("panel errors");
+  std::printf("| | 25 cells | 100 | 400 | 1600 |\n|---|---|---|---|---|\n");
+  for (const auto& row : rows) {
+    std::printf("| %s |", row.name);
+    for (const int cells : {5, 10, 20, 40}) {
+      const Scatter found = scatter(row.errors, row.kind, 0.2, cells);
+      std::printf(" %+.2f (%.2f) %% |", 100 * found.mean, 100 * found.worst);
     }
-    std::printf(
-        "%-10s t %.2f m %4d cells: deflection %+.4f (worst %.4f), edge moment %+.4f (%.4f), "
-        "centre moment %+.4f (%.4f)\n",
-        name, thickness, cells * cells, mean[0], worst[0], mean[1], worst[1], mean[2], worst[2]);
+    std::printf("\n");
   }
 }
 
@@ -206,7 +230,7 @@ void time_cascade(int cells) {
     network.set_gravity({0, 0, -1.1 / first});
     best = std::min(best, best_of(1, [&] { broken = network.cascade({}).size(); }));
   }
-  std::printf("%zu chunks: cascade of %zu bonds %.2f ms\n", asset.chunks.size(), broken, best);
+  std::printf("| %zu | a cascade of %zu bonds | %.3g |\n", asset.chunks.size(), broken, best);
 }
 
 void time(int cells) {
@@ -234,22 +258,21 @@ void time(int cells) {
     next = (next + 7) % count;
     network.stiffness();
   });
-  std::printf(
-      "%zu chunks, %zu bonds: construct %.3f ms, + condense %.3f; solve and stresses %.4f; "
-      "break a bond %.4f, + condense %.3f ms  (%.6g)\n",
-      asset.chunks.size(), asset.bonds.size(), constructed, made, solved, broken, condensed, sum);
+  const std::pair<const char*, double> rows[] = {{"build and factor", constructed},
+                                                 {"the same with the condensation", made},
+                                                 {"solve with all stresses", solved},
+                                                 {"break a bond", broken},
+                                                 {"break a bond and condense again", condensed}};
+  for (const auto& [what, ms] : rows)
+    std::printf("| %zu | %s | %.3g |\n", asset.chunks.size(), what, ms + 0 * sum);
 }
 
 }  // namespace
 
 int main() {
-  for (const double thickness : {0.05, 0.2, 0.6}) {
-    print("clamped", thickness, clamped_plate);
-    print("hinged", thickness, hinged_plate);
-  }
-  for (const double thickness : {0.05, 0.2}) print("cantilever", thickness, cantilever);
-  print("deep beam", 0.2, deep_beam);
-  print("racking", 0.2, racking);
+  measure_errors();
+  const Block block("panel times");
+  std::printf("| chunks | | ms, least |\n|---|---|---|\n");
   for (const int cells : {5, 10, 20}) time(cells);
   for (const int cells : {10, 20}) time_cascade(cells);
 }

@@ -11,6 +11,7 @@ namespace sunder {
 struct Polygons {
   std::vector<Vec2> corners;
   std::vector<std::uint32_t> begin{0};
+  std::vector<std::uint32_t> site;  ///< of each, by number
 };
 
 /// Delaunay triangulation with exact predicates, its dual, clipped to the box.

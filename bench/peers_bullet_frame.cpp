@@ -65,7 +65,7 @@ class BulletFrame final : public FrameWorld {
     const PartSolid& solid = assembly_.parts[part];
     return ours(body(part).getWorldTransform() * as_bullet(into(solid.axes, stood - solid.centre)));
   }
-  Reaction reaction(std::uint32_t joint) const override {
+  PartReaction reaction(std::uint32_t joint) const override {
     const Assembly::Joint& j = assembly_.joints[joint];
     // The joint's axes turn with part a; feedback is in the world's.
     const btMatrix3x3 turn =

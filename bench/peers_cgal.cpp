@@ -70,6 +70,7 @@ Polygons cgal_cells(const Sites& sites) {
        ++v) {
     if (!inner_cell(triangulation, v, size, polygon)) border_cell(triangulation, v, size, polygon);
     result.corners.insert(result.corners.end(), polygon.begin(), polygon.end());
+    result.site.push_back(v->info());
     result.begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
   }
   return result;

@@ -40,6 +40,7 @@ Polygons voropp_cells(const Sites& sites) {
           result.corners.push_back({places[corner] * unit, places[corner + 1] * unit});
         }
       }
+      result.site.push_back(static_cast<std::uint32_t>(loop.pid()));
       result.begin.push_back(static_cast<std::uint32_t>(result.corners.size()));
     } while (loop.inc());
   return result;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "bench/report.hpp"
 #include "fracture/solid_asset.hpp"
 #include "tests/fracture/solid_shapes.hpp"
 
@@ -87,6 +88,7 @@ SolidModel voronoi(std::int64_t count) {
 }  // namespace
 
 int main() {
+  const Block block("solid chunks");
   std::printf(
       "| mesh, pattern | its triangles | chunks | triangles | bonds | cut, bonds ms | 2 threads ms "
       "| UVs, float32 ms | Blast ms | faster | volume error | unsound chunks | exact |\n"

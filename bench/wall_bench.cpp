@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/report.hpp"
 #include "fracture/breaking.hpp"
 #include "fracture/chunk_mesh.hpp"
 #include "fracture/measure.hpp"
@@ -128,7 +129,8 @@ void bench_process(const char* what, const std::string& arguments, const std::st
 }
 
 void bench_processes(const std::string& folder) {
-  std::printf("\n| process, shell included | least ms | median ms |\n|---|---|---|\n");
+  const Block block("wall processes");
+  std::printf("| process, shell included | least ms | median ms |\n|---|---|---|\n");
   bench_process("--version", "--version", folder);
   const std::string wall = "fracture --wall 6x3x0.2 --cell 0.3 -o ";
   bench_process((wall + "wall.glb").c_str(), wall + folder + "/bench.glb", folder);
@@ -136,20 +138,16 @@ void bench_processes(const std::string& folder) {
   std::filesystem::remove(folder + "/bench.out");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::filesystem::path folder =
-      argc > 1 ? std::filesystem::path(argv[1]) : std::filesystem::temp_directory_path();
-  std::vector<double> sizes;
-  for (int i = 2; i < argc; ++i) sizes.push_back(std::strtod(argv[i], nullptr));
-  if (sizes.empty()) sizes = {1e2, 1e3, 1e4, 1e5, 1e6};
+/// Each size in a process of its own, for its peak of memory. False: one of them failed.
+bool bench_sizes(const char* name, const std::vector<double>& sizes,
+                 const std::filesystem::path& folder) {
+  const Block block(name);
   std::printf(
       "| chunks | pattern ns | mass + bonds ns | meshes ns | in memory ns | GLB ns | "
       "seed to file ms | 2 threads ms | bytes | peak MB | one hit us | rebuild / hit |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  std::fflush(stdout);
   for (const double cells : sizes) {
+    std::fflush(stdout);
     const pid_t child = fork();
     if (child == 0) {
       bench_size(cells, folder);
@@ -157,8 +155,19 @@ int main(int argc, char** argv) {
     }
     int status = 0;
     waitpid(child, &status, 0);
-    if (status != 0) return 1;
+    if (status != 0) return false;
   }
-  bench_processes(folder.string());
-  return 0;
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::filesystem::path memory = std::filesystem::exists("/dev/shm")
+                                           ? std::filesystem::path("/dev/shm")
+                                           : std::filesystem::temp_directory_path();
+  bool is_done = bench_sizes("wall files", {1e2, 1e3, 1e4, 1e5, 1e6}, memory);
+  bench_processes(memory.string());
+  is_done &= bench_sizes("wall disk", {1e4, 1e5}, argc > 1 ? argv[1] : ".");
+  return is_done ? 0 : 1;
 }

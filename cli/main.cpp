@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
     case sunder::Verb::check: return sunder::run_check(*options);
     case sunder::Verb::schema: return sunder::run_schema(*options);
     case sunder::Verb::view: return sunder::run_view(*options);
+    case sunder::Verb::completion: return sunder::run_completion(*options);
   }
   return sunder::kExitBug;
 }

@@ -9,19 +9,21 @@
 
 namespace sunder {
 
-enum class Verb { fracture, impact, collapse, check, schema, view };
+enum class Verb { fracture, impact, collapse, check, schema, view, completion };
 
 /// The command line, as given.
 struct Options {
   Verb verb = Verb::fracture;
   std::vector<std::filesystem::path> inputs;  ///< scene, or files to check or view
   std::string schema = "scene";
+  std::string shell;       ///< of completion
   std::string made_scene;  ///< scene text made from --wall … or a model; empty: none
   bool is_model = false;   ///< the input is a model
   std::vector<std::filesystem::path> outputs;  ///< -o
   std::filesystem::path report;                ///< --report; empty: none
   std::filesystem::path history;               ///< --history; empty: none
   std::optional<double> at;                    ///< --at, s
+  std::optional<int> picture_width;            ///< --width, pixels
   std::vector<std::string> overrides;          ///< --set
   std::optional<std::uint64_t> seed;
   int threads = 0;  ///< 0: as many as the machine has

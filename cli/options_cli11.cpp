@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <set>
 
+#include "cli/command_table.hpp"
 #include "cli/options.hpp"
 #include "cli/outputs.hpp"
 #include "cli/solid_scene.hpp"
@@ -16,6 +18,8 @@
 #include "fracture/wall.hpp"
 #include "io/export_files.hpp"
 #include "io/import.hpp"
+#include "io/png.hpp"
+#include "io/scene.hpp"
 #include "io/suggest.hpp"
 
 namespace sunder {
@@ -36,10 +40,15 @@ struct Given {
   WallOptions wall;
   SolidOptions solid;
   PatternOptions pattern;
-  std::string name, material, seed, threads, at;
+  std::string name, material, seed, threads, at, width, max_error;
   std::map<std::string, std::string> hulls;  // by key
   bool physics = false;
+  std::map<std::string, std::set<std::string>> choices;  // words that options take, by name
 };
+
+void add_choices(Given& given, const std::string& option, std::span<const std::string_view> words) {
+  given.choices[option].insert(words.begin(), words.end());
+}
 
 template <class Params>
 KeyForm form_of(const Field<Params>& field) {
@@ -92,11 +101,13 @@ void add_all_pattern_options(CLI::App& app, std::span<const std::string_view> ty
   }
 }
 
-std::uint64_t parse_whole(const std::string& option, const std::string& text, std::uint64_t most) {
+std::uint64_t parse_whole(const std::string& option, const std::string& text, std::uint64_t most,
+                          std::uint64_t least = 0) {
   const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
   if (!digits || text.size() > 20 || (text.size() == 20 && text > "18446744073709551615") ||
-      std::stoull(text) > most)
-    usage(option + " " + text + ": expected a whole number from 0 to " + std::to_string(most));
+      std::stoull(text) > most || std::stoull(text) < least)
+    usage(option + " " + text + ": expected a whole number from " + std::to_string(least) + " to " +
+          std::to_string(most));
   return std::stoull(text);
 }
 
@@ -155,7 +166,8 @@ void check_values(const CLI::App& verb) {
 }
 
 void add_report_options(CLI::App& verb, Options& options) {
-  verb.add_option("--report", options.report, "Write the numbers of the run to this JSON file");
+  verb.add_option("--report", options.report, "Write the numbers of the run to this .json file")
+      ->type_name("FILE");
   verb.add_flag("--json", options.json, "Print the report to standard output, and nothing else")
       ->disable_flag_override();
   verb.add_flag("-q,--quiet", options.quiet, "Print errors only")->disable_flag_override();
@@ -165,9 +177,14 @@ void add_report_options(CLI::App& verb, Options& options) {
 
 // What the verbs that run a scene have in common.
 void add_scene_options(CLI::App& verb, Options& options, Given& given, const char* suffixes) {
-  verb.add_option("scene", options.inputs, "Scene file (JSON)")->expected(0, 1);
+  verb.add_option("scene", options.inputs, "Scene file: .json")->type_name("FILE")->expected(0, 1);
   one_value_each(verb.add_option("-o,--output", options.outputs,
-                                 std::string("File to write, repeatable: ") + suffixes));
+                                 std::string("File to write, repeatable: ") + suffixes)
+                     ->type_name("FILE"));
+  verb.add_option("--width", given.width,
+                  "Pixels of a .png's width, " + std::to_string(kLeastPictureWidth) + " … " +
+                      std::to_string(kMostPictureWidth) + "; " + std::to_string(kPictureWidth) +
+                      " when not given");
   verb.add_option("--seed", given.seed, "Seed of the random numbers, instead of the scene's");
   one_value_each(verb.add_option("--set", options.overrides,
                                  "Override a value, repeatable: walls.0.pattern.jitter=0.5"));
@@ -177,13 +194,16 @@ void add_scene_options(CLI::App& verb, Options& options, Given& given, const cha
   add_report_options(verb, options);
 }
 
-void add_wall_options(CLI::App& verb, WallOptions& wall) {
+void add_wall_options(CLI::App& verb, Given& given) {
+  WallOptions& wall = given.wall;
   const auto add = [&](const char* name, auto& value, const char* description) {
     return verb.add_option(name, value, description)->group(kWallGroup);
   };
   add("--wall", wall.size, "A wall without a scene file: WIDTHxHEIGHTxTHICKNESS [m]");
   one_value_each(add("--opening", wall.openings, "Opening WxH@X,Y [m], repeatable"));
   add("--anchors", wall.anchors, "Sides held by the world: bottom,left,right,top");
+  for (const Field<Wall>& field : fields<Wall>())
+    if (field.name == "anchors") add_choices(given, "--anchors", field.choices);
   add("--min-cell", wall.keys["min_cell"], "Merge cells smaller than this into a neighbour [m]");
 }
 
@@ -218,6 +238,8 @@ void add_pattern_options(CLI::App& verb, Given& given) {
   types += "; of a model ";
   append(kSolidPatternTypes);
   verb.add_option("--pattern", given.pattern.type, types)->group(kPatternGroup);
+  add_choices(given, "--pattern", kPatternTypes);
+  add_choices(given, "--pattern", kSolidPatternTypes);
   verb.add_option("--name", given.name, "Name of the wall or solid")->group(kPatternGroup);
   verb.add_option("--material", given.material, "Material")->group(kPatternGroup);
   std::map<std::string, std::string> help;
@@ -246,6 +268,7 @@ void add_hull_options(CLI::App& verb, Given& given) {
     } else {
       verb.add_option(option->second, given.hulls[key], std::string(field.effect))
           ->group(kHullGroup);
+      add_choices(given, option->second, field.choices);
     }
   }
 }
@@ -260,9 +283,9 @@ void set_hulls(Options& options, const Given& given) {
 CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb =
       *app.add_subcommand("fracture", "Pre-fracture the walls and solids of a scene, or a model");
-  add_scene_options(verb, options, given, ".glb .gltf .obj .stl .ply .svg .html .json");
-  verb.get_option("scene")->description("Scene file (JSON), or a model: .obj .glb .gltf .stl .ply");
-  add_wall_options(verb, given.wall);
+  add_scene_options(verb, options, given, ".glb .gltf .obj .stl .ply .svg .png .html .json");
+  verb.get_option("scene")->description("Scene file: .json, or a model: .obj .glb .gltf .stl .ply");
+  add_wall_options(verb, given);
   add_solid_options(verb, given.solid);
   add_pattern_options(verb, given);
   add_hull_options(verb, given);
@@ -271,6 +294,12 @@ CLI::App& add_fracture(CLI::App& app, Options& options, Given& given) {
 
 void add_run_options(CLI::App& verb, Options& options, Given& given, const char* suffixes) {
   add_scene_options(verb, options, given, suffixes);
+  verb.add_option("--max-error", given.max_error,
+                  "Relative error asked for: chooses step, iterations and solver where the scene "
+                  "leaves them open, the cheapest that were measured to meet it");
+  verb.add_option("--at", given.at,
+                  "Show how everything stands at this time: no animation in .glb, .gltf, .html and "
+                  ".obj, one picture instead of six in .svg and .png [s]");
   verb.add_flag("--no-skip", options.no_skip,
                 "Do the work that the scene does not need too; the result is the same")
       ->disable_flag_override();
@@ -279,33 +308,44 @@ void add_run_options(CLI::App& verb, Options& options, Given& given, const char*
 CLI::App& add_impact(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb =
       *app.add_subcommand("impact", "Simulate what a scene's projectiles do to its walls");
-  add_run_options(verb, options, given, ".glb .gltf .svg .html .json");
+  add_run_options(verb, options, given, ".glb .gltf .svg .png .html .json, with --at .obj");
   return verb;
 }
 
 CLI::App& add_collapse(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb = *app.add_subcommand("collapse", "Bring a scene's frame building down");
-  add_run_options(verb, options, given, ".glb .gltf .svg .html .json, with --at .obj");
+  add_run_options(verb, options, given, ".glb .gltf .svg .png .html .json, with --at .obj");
   verb.add_option("--history", options.history,
-                  "Write the loads of every joint over time to this file: .csv .json");
-  verb.add_option("--at", given.at,
-                  "Write .glb, .gltf, .html and .obj as everything stands at this time, without "
-                  "animation [s]");
+                  "Write the loads of every joint over time to this file: .csv .json")
+      ->type_name("FILE");
   return verb;
 }
 
 CLI::App& add_check(CLI::App& app, Options& options) {
   CLI::App& verb = *app.add_subcommand("check", "Measure assets; exit 1 if one is not sound");
-  verb.add_option("files", options.inputs, ".glb .gltf .obj .stl .ply")->required();
+  verb.add_option("files", options.inputs, ".glb .gltf .obj .stl .ply")
+      ->type_name("FILE")
+      ->required();
   add_report_options(verb, options);
   return verb;
 }
 
-CLI::App& add_schema(CLI::App& app, Options& options) {
+CLI::App& add_schema(CLI::App& app, Options& options, Given& given) {
   CLI::App& verb = *app.add_subcommand("schema", "Print a JSON schema, for editors");
   verb.add_option("which", options.schema,
                   "scene, material, report (of fracture and check), impact-report or "
-                  "collapse-report; parameters: the parameter tables as Markdown");
+                  "collapse-report; parameters: the parameter tables as Markdown; man: the manual "
+                  "page");
+  add_choices(given, "which", kSchemas);
+  given.choices["which"].insert({"parameters", "man"});
+  return verb;
+}
+
+CLI::App& add_completion(CLI::App& app, Options& options, Given& given) {
+  CLI::App& verb =
+      *app.add_subcommand("completion", "Print a script that completes sunder's command line");
+  verb.add_option("shell", options.shell, "bash, zsh or fish")->required();
+  given.choices["shell"].insert(kShells.begin(), kShells.end());
   return verb;
 }
 
@@ -315,6 +355,7 @@ CLI::App& add_view(CLI::App& app, Options& options) {
   verb.add_option("files", options.inputs,
                   "What to show: .glb .gltf .obj .stl .ply; a report (.json) belongs to the file "
                   "before it")
+      ->type_name("FILE")
       ->required();
   one_value_each(verb.add_option("-o,--output", options.outputs, "Page to write: .html"))
       ->required();
@@ -361,6 +402,16 @@ void finish_fracture(const CLI::App& verb, Options& options, Given& given) {
   check_something_to_write(options, "fracture");
 }
 
+// --at and --width want a file that they change.
+void check_pictures(const Options& options) {
+  const auto shows = [](const std::filesystem::path& path) { return path.extension() != ".json"; };
+  if (options.at && std::ranges::none_of(options.outputs, shows))
+    usage("--at says which moment -o FILE.glb, .gltf, .obj, .svg or .png shows, and there is none");
+  const auto is_png = [](const std::filesystem::path& path) { return path.extension() == ".png"; };
+  if (options.picture_width && std::ranges::none_of(options.outputs, is_png))
+    usage("--width is of -o FILE.png, and there is none");
+}
+
 void finish_impact(const Options& options) {
   if (options.inputs.empty()) usage("impact needs a scene file");
   check_something_to_write(options, "impact");
@@ -369,11 +420,6 @@ void finish_impact(const Options& options) {
 void finish_collapse(const Options& options) {
   if (options.inputs.empty()) usage("collapse needs a scene file");
   if (options.history.empty()) check_something_to_write(options, "collapse");
-  const auto shows_a_moment = [](const std::filesystem::path& path) {
-    return path.extension() != ".json" && path.extension() != ".svg";
-  };
-  if (options.at && std::ranges::none_of(options.outputs, shows_a_moment))
-    usage("--at says which moment -o FILE.glb, .gltf, .html or .obj shows, and there is none");
 }
 
 void finish_check(const Options& options) {
@@ -387,6 +433,11 @@ void read_numbers(Options& options, const Given& given) {
   if (!given.threads.empty())
     options.threads = static_cast<int>(parse_whole("--threads", given.threads, 1024));
   if (!given.at.empty()) options.at = parse_seconds("--at", given.at);
+  if (!given.max_error.empty())
+    options.overrides.push_back("simulation.max_error=" + given.max_error);
+  if (given.width.empty()) return;
+  options.picture_width =
+      static_cast<int>(parse_whole("--width", given.width, kMostPictureWidth, kLeastPictureWidth));
 }
 
 // False when help or the version was asked for and is printed.
@@ -408,25 +459,52 @@ bool parse(CLI::App& app, int argc, char** argv) {
   return true;
 }
 
-}  // namespace
-
-std::optional<Options> parse_options(int argc, char** argv) {
+// The parser with what it fills in.
+struct CommandLine {
   Options options;
   Given given;
-  CLI::App app(
+  CLI::App app{
       "Breaks walls and solid models into closed, textured chunks with bonds, as glTF or OBJ, "
       "simulates what hits walls, and brings frame buildings down.",
-      "sunder");
+      "sunder"};
+  std::vector<std::pair<CLI::App*, Verb>> verbs;
+
+  CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+};
+
+CommandLine::CommandLine() {
   app.set_version_flag("--version", "sunder " SUNDER_VERSION);
   app.require_subcommand(0, 1);
-  const std::pair<CLI::App*, Verb> verbs[] = {
+  verbs = {
       {&add_fracture(app, options, given), Verb::fracture},
       {&add_impact(app, options, given), Verb::impact},
       {&add_collapse(app, options, given), Verb::collapse},
       {&add_check(app, options), Verb::check},
-      {&add_schema(app, options), Verb::schema},
+      {&add_schema(app, options, given), Verb::schema},
       {&add_view(app, options), Verb::view},
+      {&add_completion(app, options, given), Verb::completion},
   };
+}
+
+}  // namespace
+
+CommandTable command_table() {
+  CommandLine line;
+  std::set<std::string>& materials = line.given.choices["--material"];
+  for (const Material& material : builtin_materials()) materials.insert(material.name);
+  CommandTable table = table_of(line.app);
+  for (CommandVerb& verb : table.verbs)
+    for (CommandOption& option : verb.options)
+      for (const std::string& word : line.given.choices[option.names.back()])
+        option.choices.push_back(word);
+  return table;
+}
+
+std::optional<Options> parse_options(int argc, char** argv) {
+  CommandLine line;
+  auto& [options, given, app, verbs] = line;
   if (!parse(app, argc, argv)) return {};
 
   const CLI::App* const verb = app.get_subcommands().front();
@@ -440,7 +518,9 @@ std::optional<Options> parse_options(int argc, char** argv) {
     case Verb::check: finish_check(options); break;
     case Verb::schema:
     case Verb::view: break;
+    case Verb::completion: break;
   }
+  check_pictures(options);
   check_outputs(options);
   return options;
 }

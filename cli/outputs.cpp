@@ -32,20 +32,17 @@ fs::path canonical_of(fs::path path) {
 
 void check_suffix(const fs::path& path, const Options& options) {
   const std::string suffix = path.extension();
-  const bool is_collapse = options.verb == Verb::collapse;
   if (suffix == ".html") return require_page();  // before the work is done
   if (options.verb == Verb::view) usage("-o " + path.string() + ": view writes .html");
   if (suffix == ".json") return;
-  if (is_collapse || options.verb == Verb::impact) {
-    if (is_recording_suffix(suffix)) return;
-    if (is_collapse && options.at && is_recording_suffix(suffix, true)) return;
-    usage("-o " + path.string() + ": " +
-          (is_collapse ? "collapse writes .glb .gltf .svg .html .json, and .obj with --at"
-                       : "impact writes .glb .gltf .svg .html .json"));
+  if (options.verb == Verb::collapse || options.verb == Verb::impact) {
+    if (is_recording_suffix(suffix, options.at.has_value())) return;
+    usage("-o " + path.string() + ": " + (options.verb == Verb::collapse ? "collapse" : "impact") +
+          " writes .glb .gltf .svg .png .html .json, and .obj with --at");
   }
   if (!is_export_suffix(suffix))
     usage("-o " + path.string() +
-          ": the suffix says the format, one of .glb .gltf .obj .stl .ply .svg .html .json");
+          ": the suffix says the format, one of .glb .gltf .obj .stl .ply .svg .png .html .json");
 }
 
 std::vector<fs::path> written_files(const Options& options) {

@@ -13,6 +13,16 @@ void print_ledger(double energy_in, const EnergyLedger& energy, std::optional<do
   std::fprintf(stderr, "numerical %.2g\n", energy.numerical);
 }
 
+void print_settings(const RunSettings& settings) {
+  const ErrorChoice& choice = settings.choice;
+  if (choice.chosen.empty()) return;
+  std::fprintf(stderr,
+               "for an error of %.3g: steps of %.4g s, %lld iterations, expected %.2g (%s)\n",
+               choice.asked, settings.simulation.step,
+               static_cast<long long>(settings.simulation.iterations), choice.expected.value_or(0),
+               settings.front.error.c_str());
+}
+
 void print_end(const Options& options, const Scene& scene, std::string_view verb,
                std::initializer_list<std::string_view> unused, const Stopwatch& watch) {
   for (const auto& path : options.outputs) std::fprintf(stderr, "wrote %s\n", path.c_str());

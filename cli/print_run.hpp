@@ -9,6 +9,7 @@
 
 #include "cli/options.hpp"
 #include "cli/stopwatch.hpp"
+#include "io/run_report.hpp"
 #include "io/scene.hpp"
 #include "sim/impact.hpp"
 
@@ -33,6 +34,10 @@ void print_steps(const Result& result, std::uint64_t seed) {
                as_count(result.steps), as_count(result.substeps), result.step_ms_median,
                result.step_ms_p95, result.step_ms_max, as_count(seed));
 }
+
+/// Of a scene that gives `max_error`: what was chosen for it and what is to be expected; nothing
+/// for another.
+void print_settings(const RunSettings& settings);
 
 /// Files that were written; with -v also which of the `unused` keys the scene gives to no purpose,
 /// and the time of each part of the run.

@@ -22,5 +22,6 @@ int run_collapse(const Options& options);
 int run_check(const Options& options);
 int run_schema(const Options& options);
 int run_view(const Options& options);
+int run_completion(const Options& options);
 
 }  // namespace sunder

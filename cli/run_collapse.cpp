@@ -11,14 +11,13 @@
 #include "cli/print_run.hpp"
 #include "cli/progress.hpp"
 #include "cli/read_scene.hpp"
+#include "cli/recording_params.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
-#include "cli/usage.hpp"
 #include "io/collapse_report.hpp"
 #include "io/collapse_scene.hpp"
 #include "io/export_recording.hpp"
 #include "io/joint_history.hpp"
-#include "io/printable.hpp"
 
 namespace sunder {
 namespace {
@@ -27,10 +26,7 @@ Scene read_building(const Options& options) {
   Scene scene = read_scene(options);
   const std::filesystem::path& motion = scene.ground_motion_file;
   if (!motion.empty()) check_not_written(options, {&motion, 1});
-  const double duration = scene.simulation.duration;
-  if (options.at && *options.at > duration)
-    usage("--at " + number_text(*options.at) + " is after the end of the run, which lasts " +
-          number_text(duration) + " s");
+  check_moment(options, scene);
   return scene;
 }
 
@@ -59,16 +55,9 @@ CollapseResult simulate(const CollapseScene& scene, const Options& options) {
 
 void write_recording(const Recording& recording, const SimulationParams& simulation,
                      const Options& options) {
-  RecordingParams params{.has_ground = simulation.ground,
-                         .ground_height = simulation.ground_height,
-                         .threads = thread_count(options)};
-  for (const auto& path : options.outputs) {
-    if (!is_recording(path)) continue;
-    params.at = path.extension() == ".svg" ? std::nullopt : options.at;
-    // The last step may end a rounding before the run does.
-    if (params.at) params.at = std::min(*params.at, recording.times.back());
-    export_recording(recording, path, params);
-  }
+  const RecordingParams params = recording_params(options, simulation, recording);
+  for (const auto& path : options.outputs)
+    if (is_recording(path)) export_recording(recording, path, params);
   if (!options.history.empty()) write_joint_history(recording, options.history);
 }
 
@@ -82,17 +71,21 @@ int run_collapse(const Options& options) {
   watch.lap("read");
   CollapseResult result = simulate(collapse, options);
   watch.lap("simulate");
-  const std::vector<std::string> own = shortcomings(scene);
+  const RunSettings settings = run_settings(scene, "collapse");
+  std::vector<std::string> own = shortcomings(scene);
+  if (std::string warning = shortfall(scene, settings); !warning.empty())
+    own.push_back(std::move(warning));
   result.warnings.insert(result.warnings.begin(), own.begin(), own.end());
   write_recording(result.recording, collapse.simulation, options);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  write_report(options, collapse_report_json(
-                            {SUNDER_VERSION, collapse, result, took.count(), watch.steps()}));
+  write_report(options, collapse_report_json({SUNDER_VERSION, collapse, result, took.count(),
+                                              watch.steps(), settings}));
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
   if (options.quiet) return kExitOk;
   print_collapse(collapse, result);
+  print_settings(settings);
   print_end(options, scene, "collapse", {}, watch);
   return kExitOk;
 }

@@ -82,7 +82,8 @@ Fractured fracture(const Scene& scene, const Options& options, int threads) {
 }
 
 bool needs_meshes(const std::filesystem::path& path) {
-  return path.extension() != ".svg" && path.extension() != ".json";
+  const std::string suffix = suffix_of(path);
+  return suffix != ".svg" && suffix != ".png" && suffix != ".json";
 }
 
 bool holds_hulls(const std::filesystem::path& path) {
@@ -168,6 +169,18 @@ void print_summary(const Fractured& fractured, const Scene& scene, const Options
     std::fprintf(stderr, "%-8s %8.3f ms\n", step.c_str(), 1e3 * seconds);
 }
 
+// Where a solid did not bear the roughness or the waves that were asked for.
+void print_roughness(const SolidAsset& asset) {
+  const auto print = [&](const char* what, double used, double asked) {
+    if (used >= 0.999 * asked) return;
+    std::fprintf(stderr, "%s: %s of %.3g m instead of %.3g m, or chunks would cross themselves\n",
+                 asset.solid.name.c_str(), what, used, asked);
+  };
+  print("roughness", asset.stats.roughness, asset.solid.roughness);
+  if (const auto* slices = std::get_if<SolidSlicesParams>(&asset.solid.pattern))
+    print("waves", asset.stats.amplitude, slices->amplitude);
+}
+
 void print_hulls(const MeshedAsset& asset) {
   if (asset.hulls.empty()) return;
   std::uint64_t hulls = 0, over = 0;
@@ -208,6 +221,7 @@ int run_fracture(const Options& options) {
     add_hulls(meshes, scene.hulls, scene.materials, threads);
     watch.lap("hulls");
   }
+  meshes.picture_width = options.picture_width.value_or(kPictureWidth);
   for (const auto& path : options.outputs)
     if (!wants_report(path)) export_asset(meshes, path);
   watch.lap("write");
@@ -230,7 +244,10 @@ int run_fracture(const Options& options) {
     }
   }
   if (!options.quiet) print_summary(fractured, scene, options, watch);
-  if (!options.quiet) print_hulls(meshes);
+  if (!options.quiet) {
+    for (const SolidAsset& solid : fractured.solids) print_roughness(solid);
+    print_hulls(meshes);
+  }
   return exit_code;
 }
 

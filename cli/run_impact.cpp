@@ -7,6 +7,7 @@
 #include "cli/print_run.hpp"
 #include "cli/progress.hpp"
 #include "cli/read_scene.hpp"
+#include "cli/recording_params.hpp"
 #include "cli/run.hpp"
 #include "cli/stopwatch.hpp"
 #include "io/export_recording.hpp"
@@ -30,14 +31,15 @@ void print_projectile(const ProjectileOutcome& p) {
   }
 }
 
-void print_summary(const ImpactResult& result, const Scene& scene, const Options& options,
-                   const Stopwatch& watch) {
+void print_summary(const ImpactResult& result, const Scene& scene, const RunSettings& settings,
+                   const Options& options, const Stopwatch& watch) {
   for (const ProjectileOutcome& p : result.projectiles) print_projectile(p);
   std::fprintf(stderr, "%llu of %llu chunks freed, %llu bonds broken, %llu split again, %.4g kg\n",
                as_count(result.chunks_freed), as_count(result.chunks),
                as_count(result.broken_bonds), as_count(result.chunks_split), result.freed_mass);
   print_ledger(result.energy_in, result.energy);
   print_steps(result, scene.seed);
+  print_settings(settings);
   print_end(options, scene, "impact", {"solids", "building", "scenario"}, watch);
 }
 
@@ -47,6 +49,7 @@ Scene read_impact_scene(const Options& options) {
   for (const Wall& wall : scene.walls)
     if (!wall.asset.empty()) assets.emplace_back(wall.asset);
   check_not_written(options, assets);
+  check_moment(options, scene);
   if (scene.walls.empty())
     throw Error(ErrorCode::input, "the scene has no walls, so there is nothing to hit");
   return scene;
@@ -70,22 +73,22 @@ int run_impact(const Options& options) {
     return impact_scene(scene, threads, [&](double done) { bar.update(done); });
   }();
   watch.lap("fracture");
-  const ImpactResult result = simulate(impact, options);
+  ImpactResult result = simulate(impact, options);
+  const RunSettings settings = run_settings(scene, "impact");
+  if (const std::string warning = shortfall(scene, settings); !warning.empty())
+    result.warnings.push_back(warning);
   watch.lap("simulate");
-  const SimulationParams& simulation = scene.simulation;
-  const RecordingParams recording{.has_ground = simulation.ground,
-                                  .ground_height = simulation.ground_height,
-                                  .threads = threads};
+  const RecordingParams recording = recording_params(options, scene.simulation, result.recording);
   for (const auto& path : options.outputs)
     if (path.extension() != ".json") export_recording(result.recording, path, recording);
   watch.lap("write");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const std::string text =
-      impact_report_json({SUNDER_VERSION, scene.seed, result, took.count(), watch.steps()});
+  const std::string text = impact_report_json(
+      {SUNDER_VERSION, scene.seed, result, took.count(), watch.steps(), settings});
   write_report(options, text);
   for (const std::string& warning : result.warnings)
     std::fprintf(stderr, "sunder: warning: %s\n", warning.c_str());
-  if (!options.quiet) print_summary(result, scene, options, watch);
+  if (!options.quiet) print_summary(result, scene, settings, options, watch);
   return kExitOk;
 }
 

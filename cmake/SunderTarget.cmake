@@ -36,3 +36,24 @@ function(sunder_cgal_sources)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
     "-frounding-math;-Wno-conversion;-Wno-shadow;$<$<CONFIG:Debug,RelWithDebInfo>:-O1>")
 endfunction()
+
+# A module that is linked to a heavy library, loaded when first asked for, and put into a layer as a
+# file (meshing/embedded_module.hpp): `source` exports sunder_<name>_module, the layer has the
+# function <name>_file().
+function(sunder_embedded_module layer name source)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_library(sunder_${name} MODULE ${source})
+  target_include_directories(sunder_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(sunder_${name} PRIVATE ${ARG_LINK})
+  set_target_properties(sunder_${name} PROPERTIES
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+  target_link_options(sunder_${name} PRIVATE -Wl,--strip-all)  # it is copied into every program
+  sunder_options(sunder_${name})
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/libsunder_${name}.so)
+  set(holder ${CMAKE_CURRENT_BINARY_DIR}/${name}_file.cpp)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/module_file.cpp.in ${holder} @ONLY)
+  set_source_files_properties(${holder} PROPERTIES OBJECT_DEPENDS ${file})
+  target_sources(sunder_${layer} PRIVATE ${holder})
+  add_dependencies(sunder_${layer} sunder_${name})
+endfunction()

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "meshing/random.hpp"
 #include "meshing/region.hpp"
@@ -56,20 +55,6 @@ class PointTable {
   std::vector<std::uint32_t> slots_;
 };
 
-// Whether a mesh has parts that share no vertex.
-bool has_shells(const TriMesh& mesh) {
-  std::vector<std::uint32_t> root(mesh.vertices.size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t) root[find(v)] = find(t[0]);
-  return std::ranges::any_of(
-      mesh.triangles, [&](const auto& t) { return find(t[0]) != find(mesh.triangles[0][0]); });
-}
-
 struct CrackTriangle {
   std::array<std::uint32_t, 3> points;  // ascending
   bool even;                            // orientation of the ascending order
@@ -109,16 +94,6 @@ class PointTriangles {
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::uint32_t> local_;  // vertex of each point while a mesh is made
 };
-
-// Whether a closed surface crosses itself by more than rounding, or a shell of it faces the wrong
-// way, as a closed one inside another that is no cavity. Only float32 positions are asked.
-bool is_tangled(const TriMesh& mesh) {
-  constexpr auto kInsideOut = static_cast<std::size_t>(SurfaceDefect::Kind::inside_out);
-  for (const Vec3& p : mesh.vertices)
-    if (!std::isfinite(p.x + p.y + p.z)) return false;  // the volume is not finite either
-  return crosses_itself(mesh, float_rounding(mesh)) ||
-         (has_shells(mesh) && diagnose(mesh, 0).counts[kInsideOut] > 0);
-}
 
 // Measures one wall into a Soundness.
 class WallMeasure {

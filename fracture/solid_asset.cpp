@@ -163,24 +163,21 @@ double chunk_size(const SolidModel& solid, double volume) {
 }
 
 // With as much of the roughness as the solid bears: thin places, whose two sides the fine mesh
-// moves differently, and cracks that graze the surface may not bear all of it. A crossing that
-// stays at the least share is left to the measurement of the result to tell.
+// moves differently, and cracks that graze the surface may not bear all of it, or none.
 void cut_asset(SolidAsset& asset, std::uint64_t seed, int threads) {
   constexpr double kLeastShare = 0.05;
   const double chunk = chunk_size(asset.solid, asset.volume_expected);
-  for (double share = 1;; share /= 2) {
+  for (double share = 1; share >= kLeastShare; share /= 2) {
     const SolidWarp warp(asset.solid, chunk, share, seed);
-    if (warp.is_none()) return cut_flat(asset, seed, threads);
+    if (warp.is_none()) break;
     try {
       if (cut_rough(asset, warp, seed, threads)) return;
     } catch (const Error&) {
-      if (share < kLeastShare) throw;
+      // Cut flat, it tells for itself what is wrong.
     }
-    if (share >= kLeastShare) continue;
-    if (all_face_outwards(asset.chunks)) return;
-    throw Error(ErrorCode::geometry,
-                "solid " + asset.solid.name + ": too thin for its roughness; valid is less");
   }
+  asset.stats = {};
+  cut_flat(asset, seed, threads);
 }
 
 // The last word on a surface that only looked sound: one that meets itself can pass unseen where no

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "fracture/solid_parts.hpp"
 #include "meshing/parallel.hpp"
@@ -7,6 +9,8 @@
 
 namespace sunder {
 namespace {
+
+constexpr std::uint32_t kNone = ~0u;
 
 TriMesh chunk_triangles(const SolidPartition& partition, std::uint32_t chunk) {
   TriMesh mesh;
@@ -16,6 +20,30 @@ TriMesh chunk_triangles(const SolidPartition& partition, std::uint32_t chunk) {
       mesh.vertices.push_back(partition.vertices[v]);
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
+  return mesh;
+}
+
+// A chunk as a file holds it: float32 positions. `local` is all kNone before and after.
+TriMesh chunk_in_file(const SolidPartition& partition, std::uint32_t chunk,
+                      std::vector<std::uint32_t>& local) {
+  TriMesh mesh;
+  const auto in_file = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  const std::span triangles(partition.triangles.begin() + partition.chunk_begin[chunk],
+                            partition.triangles.begin() + partition.chunk_begin[chunk + 1]);
+  for (const auto& t : triangles) {
+    auto& triangle = mesh.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& v = local[t.corners[k]];
+      if (v == kNone) {
+        v = static_cast<std::uint32_t>(mesh.vertices.size());
+        const Vec3 p = partition.vertices[t.corners[k]];
+        mesh.vertices.push_back({in_file(p.x), in_file(p.y), in_file(p.z)});
+      }
+      triangle[k] = v;
+    }
+  }
+  for (const auto& t : triangles)
+    for (const std::uint32_t v : t.corners) local[v] = kNone;
   return mesh;
 }
 
@@ -29,10 +57,9 @@ struct Sum {
 }  // namespace
 
 bool has_crossings(const SolidPartition& partition) {
-  for (std::uint32_t c = 0; c < partition.chunk_count(); ++c) {
-    const TriMesh mesh = chunk_triangles(partition, c);
-    if (crosses_itself(mesh, float_rounding(mesh))) return true;
-  }
+  std::vector<std::uint32_t> local(partition.vertices.size(), kNone);
+  for (std::uint32_t c = 0; c < partition.chunk_count(); ++c)
+    if (is_tangled(chunk_in_file(partition, c, local))) return true;
   return false;
 }
 

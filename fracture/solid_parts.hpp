@@ -18,7 +18,7 @@ SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_
 /// corners between them. Chunks stay as they are but for that.
 void merge_outer_triangles(const TriMesh& surface, SolidPartition& partition);
 
-/// Whether a chunk crosses itself by more than rounding to float32 may move its corners.
+/// Whether a chunk crosses itself as a file holds it, with float32 positions: see is_tangled.
 bool has_crossings(const SolidPartition& partition);
 
 /// Mass properties of every chunk at density 1, and bonds of all pairs that share faces.

@@ -142,6 +142,7 @@ std::string collapse_report_json(const CollapseReport& report) {
     const CollapseResult& result = report.result;
     json.open('{');
     write_run(json, report.version, scene.seed, report.wall_s, result);
+    write_settings(json, report.settings);
     write_damage(json, scene.frame, result);
     write_reactions(json, scene.frame, result);
     write_balance(json, result);

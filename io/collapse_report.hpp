@@ -19,6 +19,7 @@ struct CollapseReport {
   const CollapseResult& result;
   double wall_s = 0;  ///< time of the whole run, s
   RunTimes times;
+  RunSettings settings;
 };
 
 /// JSON text; numbers read back as the same doubles, one that is not finite is null.

@@ -18,7 +18,8 @@
 namespace sunder {
 namespace {
 
-constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl", ".ply", ".svg", ".html"};
+constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".obj", ".stl",
+                                          ".ply", ".svg",  ".png", ".html"};
 
 void write_pair(std::span<const WallView> walls, const std::filesystem::path& path,
                 const std::string& suffix) {
@@ -32,6 +33,18 @@ void write_pair(std::span<const WallView> walls, const std::filesystem::path& pa
     write_mtl(walls, companion_sink);
   }
   commit_pair(companion, file);
+}
+
+void write_picture(const MeshedAsset& asset, const std::filesystem::path& path,
+                   const std::string& suffix) {
+  const std::string svg = draw_svg(asset.asset, asset.solids);
+  try {
+    write_file(path, suffix == ".png" ? png_of(svg, asset.picture_width) : svg);
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.starts_with(path.string())) throw;
+    throw Error(error.code(), path.string() + ": " + message);
+  }
 }
 
 }  // namespace
@@ -114,8 +127,8 @@ void add_hulls(MeshedAsset& asset, const HullParams& params, const std::vector<M
 
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path) {
   const std::string suffix = suffix_of(path);
-  if (suffix == ".svg") {
-    return write_file(path, draw_svg(asset.asset, asset.solids));
+  if (suffix == ".svg" || suffix == ".png") {
+    return write_picture(asset, path, suffix);
   }
   if (suffix != ".glb" && suffix != ".gltf" && suffix != ".obj" && suffix != ".html") {
     return export_through_assimp(asset, path);

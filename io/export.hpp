@@ -10,11 +10,12 @@
 #include "fracture/chunk_mesh.hpp"
 #include "fracture/hulls.hpp"
 #include "fracture/solid_asset.hpp"
+#include "io/png.hpp"
 #include "sim/material.hpp"
 
 namespace sunder {
 
-/// Suffixes export_asset writes: .glb .gltf .obj .stl .ply .svg .html
+/// Suffixes export_asset writes: .glb .gltf .obj .stl .ply .svg .png .html
 bool is_export_suffix(const std::string& suffix);
 
 /// An asset with the render meshes of its walls, made once for any number of files; and solids
@@ -27,6 +28,7 @@ struct MeshedAsset {
   std::vector<HullSet> hulls = {};  ///< of the walls, then of the solids; empty: none
   HullParams hull_params = {};
   std::vector<Material> hull_materials = {};  ///< as the hulls; friction and restitution only
+  int picture_width = kPictureWidth;          ///< of a .png, pixels
 };
 MeshedAsset mesh_asset(const Asset& asset, int threads = 1,
                        std::span<const SolidAsset> solids = {});
@@ -38,13 +40,14 @@ void add_hulls(MeshedAsset& asset, const HullParams& params, const std::vector<M
 /// Writes the asset in the format of the path's suffix; whole or not at all (a .gltf with its .bin,
 /// an .obj with its .mtl). GLB, glTF and OBJ are written straight from the meshes by the writers
 /// that are also registered with assimp (export_through_assimp), byte for byte the same; STL and
-/// PLY by assimp; SVG and the page (see page.hpp) by ourselves. A solid's textures stand inside a .glb; a .gltf or .mtl refers
-/// to the files by their path from its folder. Throws Error{usage} for another suffix,
-/// Error{output} on failure. Same asset, same bytes.
+/// PLY by assimp; SVG and the page (see page.hpp) by ourselves; PNG is the same picture (png_of).
+/// A solid's textures stand inside a .glb; a .gltf or .mtl refers to the files by their path from
+/// its folder. Throws Error{usage} for another suffix, Error{output} on failure. Same asset, same
+/// bytes.
 void export_asset(const MeshedAsset& asset, const std::filesystem::path& path);
 
-/// The same file by way of an aiScene and Assimp::Exporter, for every format but .svg; of solids,
-/// .stl and .ply only.
+/// The same file by way of an aiScene and Assimp::Exporter, for every format but .svg and .png; of
+/// solids, .stl and .ply only.
 void export_through_assimp(const MeshedAsset& asset, const std::filesystem::path& path);
 
 }  // namespace sunder

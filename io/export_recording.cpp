@@ -21,8 +21,7 @@
 namespace sunder {
 namespace {
 
-constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg", ".html"};
-constexpr std::string_view kMomentSuffixes[] = {".glb", ".gltf", ".obj", ".html"};
+constexpr std::string_view kSuffixes[] = {".glb", ".gltf", ".svg", ".png", ".html"};
 constexpr int kMostFrames = 60;
 
 [[noreturn]] void refuse_suffix(const std::string& suffix, bool of_moment) {
@@ -30,12 +29,12 @@ constexpr int kMostFrames = 60;
     throw Error(ErrorCode::usage, "an .obj holds one moment of a recording: say at which time");
   }
   if (of_moment) {
-    throw Error(
-        ErrorCode::usage,
-        "suffix \"" + suffix + "\" of one moment of a recording is not one of .glb .gltf .obj .html");
+    throw Error(ErrorCode::usage,
+                "suffix \"" + suffix +
+                    "\" of one moment of a recording is not one of .glb .gltf .obj .svg .png .html");
   }
   throw Error(ErrorCode::usage,
-              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg .html");
+              "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg .png .html");
 }
 
 void check_params(const std::string& suffix, const RecordingParams& params) {
@@ -85,11 +84,19 @@ void write_solids(const Recording& recording, const std::filesystem::path& path,
   commit_pair(companion, file);
 }
 
+std::string draw_pictures(const Recording& recording, const RecordingParams& params) {
+  StripParams strip{.frames = params.frames,
+                    .has_ground = params.has_ground,
+                    .ground_height = params.ground_height};
+  if (params.at) strip.only = step_nearest(recording, *params.at);
+  return draw_strip(recording, strip);
+}
+
 }  // namespace
 
 bool is_recording_suffix(const std::string& suffix, bool of_moment) {
-  const auto& suffixes = of_moment ? kMomentSuffixes : kSuffixes;
-  return std::ranges::find(suffixes, suffix) != std::end(suffixes);
+  return (of_moment && suffix == ".obj") ||
+         std::ranges::find(kSuffixes, suffix) != std::end(kSuffixes);
 }
 
 void export_recording(const Recording& recording, const std::filesystem::path& path,
@@ -98,10 +105,9 @@ void export_recording(const Recording& recording, const std::filesystem::path& p
   check_params(suffix, params);
   try {
     validate(recording);
-    if (suffix != ".svg") return write_solids(recording, path, suffix, params);
-    write_file(path, draw_strip(recording, {.frames = params.frames,
-                                            .has_ground = params.has_ground,
-                                            .ground_height = params.ground_height}));
+    if (suffix != ".svg" && suffix != ".png") return write_solids(recording, path, suffix, params);
+    const std::string svg = draw_pictures(recording, params);
+    write_file(path, suffix == ".png" ? png_of(svg, params.picture_width) : svg);
   } catch (const Error& error) {
     const std::string message = error.what();
     if (message.starts_with(path.string())) throw;

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <vector>
 
+#include "io/gltf_series.hpp"
+
 namespace sunder {
 namespace {
 
@@ -194,6 +196,7 @@ void write_gltf_binary(std::span<const WallView> walls, const GltfLayout& layout
   write_times(layout, out);
   write_poses(layout, out);
   write_weights(parts, out);
+  for_each_utilisation(layout, [&out](std::uint16_t value) { out.put(value); });
   out.flush();
   for (const GltfImage& image : layout.images) {
     sink.write(image.bytes);

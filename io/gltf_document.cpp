@@ -6,6 +6,7 @@
 #include "io/gltf_hulls.hpp"
 #include "io/gltf_motion.hpp"
 #include "io/gltf_part_text.hpp"
+#include "io/gltf_series.hpp"
 #include "io/gltf_text.hpp"
 #include "io/image_file.hpp"
 #include "io/moment.hpp"
@@ -38,6 +39,7 @@ class Document {
     write_accessors();
     write_views();
     motion_.write_animation(walls_.size(), first_projectile(), parts_);
+    write_series(layout_, first_projectile() + layout_.mesh_of.size(), out_);
     if (layout_.binary_size > 0) {
       out_.text(R"(,"buffers":[{"byteLength":)");
       out_.integer(layout_.binary_size);
@@ -468,7 +470,8 @@ void Document::write_views() {
   write_view(GltfBlock::colours, R"(,"byteStride":12,"target":34962)", first);
   write_view(GltfBlock::indices, R"(,"target":34963)", first);
   for (const GltfBlock block : {GltfBlock::bonds, GltfBlock::times, GltfBlock::translations,
-                                GltfBlock::rotations, GltfBlock::weights}) {
+                                GltfBlock::rotations, GltfBlock::weights,
+                                GltfBlock::utilisations}) {
     write_view(block, "", first);
   }
   write_image_views(first);

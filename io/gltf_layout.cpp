@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "io/gltf_series.hpp"
 #include "io/image_file.hpp"
 #include "meshing/trig.hpp"
 
@@ -117,7 +118,8 @@ std::array<std::uint64_t, kGltfBlocks> lay_out_blocks(const Sizes& walls, GltfLa
           4 * (layout.common_times() + parts.key_count),
           12 * (animation.pose_count + animation.scale_count()),
           16 * animation.pose_count,
-          4 * kLights * parts.key_count};
+          4 * kLights * parts.key_count,
+          series_bytes(layout)};
 }
 
 }  // namespace

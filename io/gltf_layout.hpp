@@ -19,7 +19,7 @@ constexpr std::uint32_t kLargestShortIndex = 65534;
 constexpr std::uint32_t kUnused = UINT32_MAX;
 
 /// The binary is a few large blocks, each one bufferView: what vertices and triangles of all walls
-/// spheres and parts consist of, the bonds, and the animation's keys.
+/// spheres and parts consist of, the bonds, the animation's keys, and how far joints are used.
 enum class GltfBlock {
   positions,
   normals,
@@ -30,9 +30,10 @@ enum class GltfBlock {
   times,
   translations,
   rotations,
-  weights
+  weights,
+  utilisations
 };
-constexpr std::size_t kGltfBlocks = 10;
+constexpr std::size_t kGltfBlocks = 11;
 
 /// A picture that materials refer to.
 struct GltfImage {

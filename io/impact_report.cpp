@@ -77,6 +77,7 @@ std::string impact_report_json(const ImpactReport& report) {
     const ImpactResult& result = report.result;
     json.open('{');
     write_run(json, report.version, report.seed, report.wall_s, result);
+    write_settings(json, report.settings);
     write_damage(json, result);
     write_balance(json, result);
     write_projectiles(json, result.projectiles);

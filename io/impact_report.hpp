@@ -16,6 +16,7 @@ struct ImpactReport {
   const ImpactResult& result;
   double wall_s = 0;  ///< time of the whole run, s
   RunTimes times;
+  RunSettings settings;
 };
 
 /// JSON text; numbers read back as the same doubles, one that is not finite is null.

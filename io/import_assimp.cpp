@@ -116,10 +116,17 @@ class Flattener {
     return asset_.walls.size() - 1;
   }
 
-  // What stands before "_chunk_"; a mesh that no one named so belongs to the file.
-  std::string wall_of(const std::string& chunk) const {
-    const std::size_t at = chunk.rfind("_chunk_");
-    return at == std::string::npos ? file_name_ : chunk.substr(0, at);
+  // A member, slab or panel of a building's recording stands for itself: at its joints it may
+  // overlap others. A chunk's wall is what stands before "_chunk_"; a mesh that no one named so
+  // belongs to the file.
+  std::size_t home_of(const aiNode& node, const aiMetadata* extras) {
+    const std::string name = node.mName.C_Str();
+    const std::size_t at = name.rfind("_chunk_");
+    if (at != std::string::npos) return wall_named(name.substr(0, at));
+    if (!number(extras, "mass")) return wall_named(file_name_);
+    const std::size_t part = wall_named(name);
+    asset_.walls[part].kind = SoupWall::Kind::solid;
+    return part;
   }
 
   void visit(const aiNode& node, std::optional<std::size_t> wall) {
@@ -136,7 +143,7 @@ class Flattener {
         material = material_of(mesh);
         append(mesh, material.ends_with("_inner"), chunk);
       }
-      const std::size_t home = wall ? *wall : wall_named(wall_of(chunk.name));
+      const std::size_t home = wall ? *wall : home_of(node, extras);
       // Both materials of a wall are named after one.
       for (const std::string_view end : {"_outer", "_inner"})
         if (material.ends_with(end) && asset_.walls[home].material.empty())

@@ -72,6 +72,7 @@ constexpr ReportKey kRunKeys[] = {
     {"simulated_s", "number", "Time that was simulated. Unit: s."},
     {"wall_s", "number", "Time that the run took. Unit: s."},
     {"step_ms", "object", "Time that a step took. Unit: ms."},
+    {"settings", "object", "The error asked for, and what the settings are known to give."},
 };
 
 constexpr ReportKey kImpactKeys[] = {
@@ -291,6 +292,18 @@ constexpr ReportKey kCollapseSkippedKeys[] = {
     {"panel_solves", "integer", "Networks × steps in which nothing had changed for them."},
 };
 
+constexpr ReportKey kSettingKeys[] = {
+    {"max_error", "number", "Relative error asked for."},
+    {"chosen", "array", "Keys of the simulation that were chosen for it."},
+    {"step", "number", "Unit: s."},
+    {"iterations", "integer", "Of the contact solver."},
+    {"expected_error", "number|null",
+     "Measured with settings no finer than these; null: nothing comparable was measured."},
+    {"met", "boolean", "Whether that is at most what was asked for."},
+    {"error_is", "string", "What that error is."},
+    {"not_in_it", "string", "What it says nothing about."},
+};
+
 /// An object of the keys of these tables, all of them required.
 Json object_of(std::initializer_list<std::span<const ReportKey>> tables) {
   Json properties = Json::object(), required = Json::array();
@@ -334,6 +347,8 @@ Json point_schema() {
 /// What every run of a simulation has.
 void fill_run(Json& properties) {
   fill(properties["step_ms"], object_of(kStepKeys));
+  fill(properties["settings"], object_of(kSettingKeys));
+  fill(properties["settings"]["properties"]["chosen"], list_of({{"type", "string"}}));
   fill(properties["projectiles"], list_of(object_of(kProjectileKeys)));
   fill(properties["solves"], object_of(kSolveKeys));
   properties["hash"]["pattern"] = "^[0-9a-f]{16}$";

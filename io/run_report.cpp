@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/run_report.hpp"
 
+#include "io/printable.hpp"
+
 namespace sunder {
 namespace {
 
@@ -11,6 +13,42 @@ std::string hex_digits(std::uint64_t value) {
 }
 
 }  // namespace
+
+RunSettings run_settings(const Scene& scene, std::string_view job) {
+  const ErrorFront& front = error_front(job);
+  return {scene.simulation, front,
+          scene.error_choice ? *scene.error_choice : expected_error(front, scene.simulation)};
+}
+
+std::string shortfall(const Scene& scene, const RunSettings& settings) {
+  if (!scene.error_choice || settings.choice.is_met()) return {};
+  const std::string asked = "max_error = " + number_text(settings.choice.asked);
+  if (!settings.choice.expected)
+    return asked +
+           ": nothing was measured with settings as coarse as the scene's; what it gives is "
+           "not known";
+  return asked + " is less than the settings give: " + number_text(*settings.choice.expected) +
+         " was measured (" + settings.front.error + ")";
+}
+
+void write_settings(JsonLines& json, const RunSettings& settings) {
+  const ErrorChoice& choice = settings.choice;
+  json.open("settings", '{');
+  json.number("max_error", choice.asked);
+  json.open("chosen", '[');
+  for (const std::string& key : choice.chosen) json.text(key);
+  json.close();
+  json.number("step", settings.simulation.step);
+  json.count("iterations", static_cast<std::uint64_t>(settings.simulation.iterations));
+  if (choice.expected)
+    json.number("expected_error", *choice.expected);
+  else
+    json.null("expected_error");
+  json.truth("met", choice.is_met());
+  json.text("error_is", settings.front.error);
+  json.text("not_in_it", settings.front.not_in_it);
+  json.close();
+}
 
 void write_ledger(JsonLines& json, double energy_in, const EnergyLedger& energy) {
   json.number("in", energy_in);

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "io/error_front.hpp"
 #include "io/json_lines.hpp"
+#include "io/scene.hpp"
 #include "sim/collapse.hpp"
 #include "sim/impact.hpp"
 
@@ -34,6 +36,19 @@ void write_run(JsonLines& json, std::string_view version, std::uint64_t seed, do
   json.number("max", result.step_ms_max);
   json.close();
 }
+
+/// What a run was asked for and what its settings are known to give.
+struct RunSettings {
+  const SimulationParams& simulation;
+  const ErrorFront& front;
+  ErrorChoice choice;
+};
+/// Of a scene that is run as `job`, "impact" or "collapse".
+RunSettings run_settings(const Scene& scene, std::string_view job);
+/// A warning for settings that are not as exact as the scene asks for; empty otherwise.
+std::string shortfall(const Scene& scene, const RunSettings& settings);
+/// "settings": an object.
+void write_settings(JsonLines& json, const RunSettings& settings);
 
 /// The keys of "energy" that every run has, into an open object.
 void write_ledger(JsonLines& json, double energy_in, const EnergyLedger& energy);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/error_front.hpp"
 #include "fracture/hulls.hpp"
 #include "fracture/solid_model.hpp"
 #include "fracture/wall.hpp"
@@ -32,6 +33,7 @@ struct Scene {
   Scenario scenario;
   std::filesystem::path ground_motion_file;  ///< that the scenario names; empty: none
   SimulationParams simulation;
+  std::optional<ErrorChoice> error_choice;  ///< of a scene that gives max_error
   HullParams hulls;
   std::vector<std::string> keys;  ///< top-level keys that the file gives, in its order
 };
@@ -61,6 +63,8 @@ const Material& find_material(const std::vector<Material>& materials, const std:
 
 /// JSON Schema (draft-07) of "scene", "material", "report" (of fracture and check), "impact-report"
 /// or "collapse-report". Throws Error{usage} for another.
+inline constexpr std::string_view kSchemas[] = {"scene", "material", "report", "impact-report",
+                                                "collapse-report"};
 std::string json_schema(std::string_view which);
 /// docs/parameters.md, from the same tables.
 std::string parameters_markdown();

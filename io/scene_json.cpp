@@ -124,11 +124,22 @@ void check_version(const Place& scene) {
   }
 }
 
-SimulationParams read_simulation(const Place& place) {
+// Settings that a scene leaves open follow from the error it asks for.
+std::optional<ErrorChoice> choose_open_settings(const Place& place, std::string_view job,
+                                                SimulationParams& params) {
+  if (!place.value.find("max_error")) return std::nullopt;
+  std::vector<std::string_view> given;
+  for (const JsonMember& member : object_at(place)) given.push_back(member.key);
+  return choose_settings(error_front(job), given, params);
+}
+
+void read_simulation(const Place& place, Scene& scene) {
   constexpr double kMostSteps = 1e7;
   check_keys(place, keys_of<SimulationParams>());
-  SimulationParams params;
+  SimulationParams& params = scene.simulation;
   read_fields(params, place);
+  scene.error_choice =
+      choose_open_settings(place, scene.building ? "collapse" : "impact", params);
   const double steps = std::floor(params.duration / params.step);
   if (steps > kMostSteps) {
     const JsonValue* step = place.value.find("step");
@@ -138,7 +149,6 @@ SimulationParams read_simulation(const Place& place) {
               number_text(steps) + " steps, the most is " + number_text(kMostSteps) +
               "; take a step of at least " + number_text(params.duration / kMostSteps) + " s");
   }
-  return params;
 }
 
 void read_buildings(Scene& scene, const Place& place, const SceneFolder& folder) {
@@ -165,7 +175,7 @@ void read_run(Scene& scene, const Place& place) {
                                          scene.building ? &*scene.building : nullptr);
   }
   if (const JsonValue* simulation = place.value.find("simulation")) {
-    scene.simulation = read_simulation(Place(place, "simulation", *simulation));
+    read_simulation(Place(place, "simulation", *simulation), scene);
   }
   if (const JsonValue* hulls = place.value.find("hulls")) {
     const Place at(place, "hulls", *hulls);

@@ -410,8 +410,6 @@ Json scene_schema() {
 }  // namespace
 
 std::string json_schema(std::string_view which) {
-  constexpr std::string_view kNames[] = {"scene", "material", "report", "impact-report",
-                                         "collapse-report"};
   if (which == "scene") return scene_schema().dump(2) + '\n';
   if (which == "material") {
     return with_title("sunder material", fields_schema(field_rows<Material>())).dump(2) + '\n';
@@ -420,7 +418,7 @@ std::string json_schema(std::string_view which) {
   if (which == "impact-report") return impact_report_schema();
   if (which == "collapse-report") return collapse_report_schema();
   throw Error(ErrorCode::usage,
-              "no schema of \"" + printable(which, 40) + '"' + hint_for(which, kNames));
+              "no schema of \"" + printable(which, 40) + '"' + hint_for(which, kSchemas));
 }
 
 }  // namespace sunder

@@ -467,8 +467,10 @@ void Picture::draw_end(std::uint32_t i, int end) {
   const double from = std::max(-solid.half, (end == 0 ? -tip : tip - part.end) - part.middle);
   const double to = std::min(solid.half, (end == 0 ? part.end - tip : tip) - part.middle);
   if (from >= to) return;
-  out_.text("<path fill=\"").colour(light.colour).text("\" opacity=\"");
-  out_.number(std::floor(100 * light.strength + 0.5) / 100).text("\" d=\"");
+  out_.text("<path fill=\"").colour(light.colour).text("\" fill-opacity=\"");
+  // Not the opacity of both, which makes a renderer draw each on a sheet of its own.
+  out_.number(std::floor(100 * light.strength + 0.5) / 100).text("\" stroke-opacity=\"");
+  out_.number(std::floor(42 * light.strength + 0.5) / 100).text("\" d=\"");
   const auto project = [&](Vec2 p, double z) {
     return scene_.camera.project(scene_.camera.see(solid.pose * Vec3{p.x, p.y, z}));
   };

@@ -51,31 +51,6 @@ std::vector<std::string> labels_of(const Recording& recording,
   return labels;
 }
 
-// A member's colours, explained below the pictures: drawn 9300 wide, shrunk where that is too much.
-void draw_legend(double left, double top, double width, StripPaper& paper) {
-  struct Entry {
-    EndLoad load;
-    std::string_view words;
-    double left;
-  };
-  constexpr Entry kEntries[] = {{{1, 0, false}, "force", 0},
-                                {{0, 1, false}, "torque", 2000},
-                                {{1, 1, false}, "both", 4200},
-                                {{0, 0, true}, "failed joint", 6000}};
-  paper.text("<g class=\"legend\" transform=\"translate(").number(left).text(" ").number(top);
-  paper.text(") scale(").number(std::min(1.0, width / 9300));
-  paper.text(")\" font-size=\"420\" font-family=\"Helvetica, Arial, sans-serif\" ");
-  paper.text("fill=\"#20262c\">\n");
-  for (const Entry& entry : kEntries) {
-    paper.text("<rect x=\"").number(entry.left).text("\" width=\"420\" height=\"420\" ");
-    paper.text("rx=\"60\" fill=\"").colour(light_of(entry.load).colour);
-    paper.text("\"/><text x=\"").number(entry.left + 560).text("\" y=\"355\">");
-    paper.text(entry.words).text("</text>\n");
-  }
-  paper.text("<text y=\"900\" font-size=\"340\" fill=\"#5a626a\">");
-  paper.text("at the ends of members, stronger the nearer to failure</text>\n</g>\n");
-}
-
 // A building's, below its pictures: the time and how many joints have broken.
 std::vector<std::string> captions_of(const Recording& recording,
                                      const std::vector<std::uint32_t>& steps) {
@@ -93,15 +68,16 @@ struct Page {
   std::size_t columns = 0, rows = 0;
   double picture = kStripWidth;  // width of one
   bool is_of_building = false;   // with captions below the pictures, and a legend
+  double letters = 1;            // size of all words; a single picture is drawn larger
 
   double left(std::size_t i) const {
     return static_cast<double>(i % columns) * (picture + kGap) + kGap;
   }
   double top(std::size_t i) const { return row_top(i / columns); }
   double width() const { return static_cast<double>(columns) * (picture + kGap) + kGap; }
-  double height() const { return row_top(rows) + (is_of_building ? kLegendHeight : 0); }
+  double height() const { return row_top(rows) + (is_of_building ? letters * kLegendHeight : 0); }
   double row_top(std::size_t row) const {
-    const double caption = is_of_building ? kCaptionHeight : 0;
+    const double caption = is_of_building ? letters * kCaptionHeight : 0;
     return static_cast<double>(row) * (kStripHeight + caption + kGap) + kGap;
   }
 };
@@ -109,24 +85,56 @@ struct Page {
 Page page_of(const StripScene& scene, std::size_t pictures) {
   const std::size_t columns = std::min(kColumns, pictures);
   const std::size_t rows = (pictures + columns - 1) / columns;
-  return {columns, rows, scene.camera.width, !scene.recording.parts.empty()};
+  return {columns, rows, scene.camera.width, !scene.recording.parts.empty(),
+          scene.params.only ? 0.5 : 1};
+}
+
+// A member's colours, explained below the pictures: drawn 9300 wide, shrunk where that is too much.
+void draw_legend(const Page& page, StripPaper& paper) {
+  struct Entry {
+    EndLoad load;
+    std::string_view words;
+    double left;
+  };
+  constexpr Entry kEntries[] = {{{1, 0, false}, "force", 0},
+                                {{0, 1, false}, "torque", 2000},
+                                {{1, 1, false}, "both", 4200},
+                                {{0, 0, true}, "failed joint", 6000}};
+  paper.text("<g class=\"legend\" transform=\"translate(")
+      .number(page.left(0) + 60 * page.letters)
+      .text(" ");
+  paper.number(page.height() - (kLegendHeight - 20) * page.letters);
+  paper.text(") scale(").number(std::min(page.letters, (page.width() - 2 * kGap - 60) / 9300));
+  paper.text(")\" font-size=\"420\" font-family=\"Helvetica, Arial, sans-serif\" ");
+  paper.text("fill=\"#20262c\">\n");
+  for (const Entry& entry : kEntries) {
+    paper.text("<rect x=\"").number(entry.left).text("\" width=\"420\" height=\"420\" ");
+    paper.text("rx=\"60\" fill=\"").colour(light_of(entry.load).colour);
+    paper.text("\"/><text x=\"").number(entry.left + 560).text("\" y=\"355\">");
+    paper.text(entry.words).text("</text>\n");
+  }
+  paper.text("<text y=\"900\" font-size=\"340\" fill=\"#5a626a\">");
+  paper.text("at the ends of members, stronger the nearer to failure</text>\n</g>\n");
 }
 
 // In a corner of a wall's picture.
-void draw_label(const std::string& label, StripPaper& paper) {
-  paper.text("<rect x=\"160\" y=\"5680\" width=\"1500\" height=\"560\" rx=\"120\" ");
+void draw_label(const std::string& label, double letters, StripPaper& paper) {
+  paper.text("<g transform=\"translate(0 ").number(kStripHeight * (1 - letters));
+  paper.text(") scale(")
+      .number(letters)
+      .text(")\">\n<rect x=\"160\" y=\"5680\" width=\"1500\" height=\"560\" rx=\"120\" ");
   paper.text("fill=\"#fff\" fill-opacity=\".72\"/>\n<text x=\"910\" y=\"6095\" ");
   paper.text("font-size=\"380\" font-weight=\"600\" text-anchor=\"middle\" ");
   paper.text("font-family=\"Helvetica, Arial, sans-serif\" fill=\"#20262c\">");
-  paper.text(label).text("</text>\n");
+  paper.text(label).text("</text>\n</g>\n");
 }
 
 void draw_captions(const Page& page, const std::vector<std::string>& captions, StripPaper& paper) {
-  paper.text("<g font-size=\"380\" font-weight=\"600\" ");
+  paper.text("<g font-size=\"").number(380 * page.letters).text("\" font-weight=\"600\" ");
   paper.text("font-family=\"Helvetica, Arial, sans-serif\" fill=\"#20262c\">\n");
   for (std::size_t i = 0; i < captions.size(); ++i) {
-    paper.text("<text x=\"").number(page.left(i) + 60).text("\" y=\"");
-    paper.number(page.top(i) + kStripHeight + 410).text("\">").text(captions[i]);
+    paper.text("<text x=\"").number(page.left(i) + 60 * page.letters).text("\" y=\"");
+    paper.number(page.top(i) + kStripHeight + 410 * page.letters).text("\">").text(captions[i]);
     paper.text("</text>\n");
   }
   paper.text("</g>\n");
@@ -136,7 +144,8 @@ void draw_page(const StripScene& scene, const std::vector<std::uint32_t>& steps,
                StripPaper& paper) {
   const Page page = page_of(scene, steps.size());
   const double width = page.width(), height = page.height();
-  const double scale = kStripWidth / page.picture / 20;  // all strips are as wide
+  const double size = scene.params.only ? 10 : 20;         // picture units of a pixel
+  const double scale = kStripWidth / page.picture / size;  // all strips are as wide
   const double edge = 0.5 * (kStripWidth - page.picture);
   paper.text("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ").number(width);
   paper.text(" ").number(height).text("\" width=\"").number(width * scale);
@@ -153,12 +162,12 @@ void draw_page(const StripScene& scene, const std::vector<std::uint32_t>& steps,
     paper.text("stroke-width=\"7\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n");
     draw_strip_picture(scene, steps[i], paper);
     paper.text("</g>\n");
-    if (!page.is_of_building) draw_label(labels[i], paper);
+    if (!page.is_of_building) draw_label(labels[i], page.letters, paper);
     paper.text("</svg>\n");
   }
   if (page.is_of_building) {
     draw_captions(page, captions_of(scene.recording, steps), paper);
-    draw_legend(page.left(0) + 60, height - kLegendHeight + 20, width - 2 * kGap - 60, paper);
+    draw_legend(page, paper);
   }
   paper.text("</svg>\n");
 }
@@ -172,7 +181,7 @@ std::string draw_strip(const Recording& recording, const StripParams& params) {
   const StripScene scene{recording, params, strip_parts(recording),
                          place_camera(recording, steps, ground)};
   StripPaper paper;
-  draw_page(scene, steps, paper);
+  draw_page(scene, params.only ? std::vector{*params.only} : steps, paper);
   return paper.take();
 }
 

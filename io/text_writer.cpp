@@ -112,6 +112,11 @@ char* put_number(char* out, double value) {
   return put_decimal(out, digits, exponent);
 }
 
+char* put_shortest(char* out, float value) {
+  assert(std::isfinite(value));
+  return std::to_chars(out, out + kNumberRoom, value).ptr;
+}
+
 char* put_exact(char* out, double value) {
   assert(std::isfinite(value));
   return std::to_chars(out, out + kNumberRoom, value).ptr;

@@ -24,6 +24,8 @@ class ByteSink {
 /// kNumberRoom bytes. The value is finite.
 constexpr std::size_t kNumberRoom = 40;
 char* put_number(char* out, double value);
+/// The shortest text that reads back as the same float32.
+char* put_shortest(char* out, float value);
 /// The shortest text that reads back as the same double.
 char* put_exact(char* out, double value);
 char* put_integer(char* out, std::uint64_t value);
@@ -44,6 +46,7 @@ class TextWriter {
     at_ += part.size();
   }
   void number(double value) { at_ = put_number(room(), value); }
+  void shortest(float value) { at_ = put_shortest(room(), value); }
   void exact(double value) { at_ = put_exact(room(), value); }
   void integer(std::uint64_t value) { at_ = put_integer(room(), value); }
   /// A JSON string with its quotes.

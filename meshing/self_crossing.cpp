@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "meshing/surface_defects.hpp"
 #include "meshing/triangle_tree.hpp"
 
 namespace sunder {
@@ -41,6 +43,20 @@ double least_overlap(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
   return least;
 }
 
+// Whether a mesh has parts that share no vertex.
+bool has_shells(const TriMesh& mesh) {
+  std::vector<std::uint32_t> root(mesh.vertices.size());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&](std::uint32_t v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) root[find(v)] = find(t[0]);
+  return std::ranges::any_of(
+      mesh.triangles, [&](const auto& t) { return find(t[0]) != find(mesh.triangles[0][0]); });
+}
+
 }  // namespace
 
 double crossing_depth(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
@@ -64,6 +80,14 @@ double float_rounding(const TriMesh& mesh) {
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   // Half a unit in the last place, √3 for the axes, two corners: 2^-23 · √3; twice that.
   return 0x1p-21 * largest;
+}
+
+bool is_tangled(const TriMesh& mesh) {
+  constexpr auto kInsideOut = static_cast<std::size_t>(SurfaceDefect::Kind::inside_out);
+  for (const Vec3& p : mesh.vertices)
+    if (!std::isfinite(p.x + p.y + p.z)) return false;  // the volume is not finite either
+  return crosses_itself(mesh, float_rounding(mesh)) ||
+         (has_shells(mesh) && diagnose(mesh, 0).counts[kInsideOut] > 0);
 }
 
 }  // namespace sunder

@@ -21,4 +21,9 @@ bool crosses_itself(const TriMesh& mesh, double depth);
 /// What rounding to float32 may move corners of a mesh towards each other, m, with a margin of two.
 double float_rounding(const TriMesh& mesh);
 
+/// Whether a closed surface at float32 precision crosses itself by more than that rounding, or a
+/// shell of it faces the wrong way, as a closed one inside another that is no cavity. What is not
+/// finite is not: its volume tells. O(triangles log triangles).
+bool is_tangled(const TriMesh& mesh);
+
 }  // namespace sunder

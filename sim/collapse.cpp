@@ -385,6 +385,7 @@ void CollapseRun::sample(double time) {
   next_sample_ = time + scene_.simulation.history_step;
   for (std::uint32_t j = 0; j < joints_.size(); ++j)
     if (joints_[j].intact) result_.joint_gap = std::max(result_.joint_gap, motion_->joint_gap(j));
+  sample_run();
   if (!params_.keep_history) return;
   all_known_ = false;
   const double last = sample_times_.empty() ? -1 : sample_times_.back();
@@ -420,23 +421,9 @@ CollapseResult CollapseRun::outcome() {
   CollapseResult& r = result_;
   r.bodies = world_.body_count();
   r.merged_bodies = world_.merged_count();
-  const MotionLosses losses = motion_->losses();
-  r.energy_in += motion_->given();
-  r.energy.kinetic = world_.kinetic_energy() + motion_->kinetic();
-  r.energy.strain = motion_->strain() + motion_->potential() - start_;
-  r.energy.potential = world_.potential_energy() - baseline_ - motion_->baseline();
-  r.energy.contact += losses.contact;
-  r.energy.fracture = losses.fracture;
-  if (panels_) {
-    r.energy.potential -= panels_->baseline();
-    r.energy.contact += panels_->energy().contact;
-    r.energy.friction += panels_->energy().friction;
-    r.energy.fracture += panels_->energy().fracture;
-    impulse_ = impulse_ + panels_->impulse();
-  }
-  r.joint_work = losses.joint;
-  r.damping = losses.damping;
-  r.plastic = losses.plastic;
+  if (series_.back().time < now_) sample_run();
+  take_balance();
+  if (panels_) impulse_ = impulse_ + panels_->impulse();
   r.solves = motion_->solves();
   r.residual = motion_->residual();
   if (const std::optional<Buckling> buckling = motion_->buckling()) {
@@ -444,9 +431,6 @@ CollapseResult CollapseRun::outcome() {
     r.warnings.push_back("at " + std::to_string(buckling->time) + " s " + buckling->what +
                          "; from then on axial forces no longer make it softer");
   }
-  r.energy.numerical = r.energy_in - r.energy.kinetic - r.energy.potential - r.energy.strain -
-                       r.energy.fracture - r.energy.friction - r.energy.contact - r.joint_work -
-                       r.damping - r.plastic;
   r.momentum_error = largest_momentum_ > 0 ? largest_momentum_error_ / largest_momentum_ : 0;
   r.reactions[0] = impulse_.x, r.reactions[1] = impulse_.y, r.reactions[2] = impulse_.z;
   r.solver_fallbacks = world_.solver_fallbacks();
@@ -502,6 +486,8 @@ Recording CollapseRun::recording() {
   }
   recording.sample_times = std::move(sample_times_);
   recording.samples = std::move(samples_);
+  recording.seed = scene_.seed;
+  recording.series = std::move(series_);
   for (std::size_t i = 0; i < shots_.size(); ++i)
     recording.projectiles.push_back({scene_.projectiles[i], shots_[i].track});
   return recording;

@@ -73,6 +73,14 @@ class CollapseRun {
   std::vector<std::uint32_t> tops() const;
   std::vector<std::uint8_t> grounded() const;
 
+  // run_balance.cpp: where the energy is.
+  RunSample balance() const;
+  double energy_in() const { return result_.energy_in + motion_->given(); }
+  void note_use(double utilisation);
+  double most_used_now() const;
+  void sample_run();
+  void take_balance();
+
   // joint_failure.cpp: loads, and what breaks.
   void break_overloaded();
   void cascade();
@@ -105,7 +113,10 @@ class CollapseRun {
   Recorder recorder_;
   std::vector<double> sample_times_;
   std::vector<JointSample> samples_;
+  std::vector<RunSample> series_;
   CollapseResult result_;
+  double posts_use_ = 0;     ///< largest of all posts at the last look
+  double used_ = 0;          ///< largest utilisation since the last sample
   double now_ = 0, last_dt_ = 0, next_sample_ = 0;
   std::uint64_t intact_joints_ = 0, present_parts_ = 0;
   bool all_known_ = false;    ///< no joint has to be read until a load changes or a sample is taken

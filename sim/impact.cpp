@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -41,6 +42,8 @@ class ImpactRun {
   void advance(double dt);
   void note_energy();
   void record(double time);
+  EnergyLedger ledger() const;
+  void sample();
   double largest_energy_scale() const;
   ImpactResult outcome();
 
@@ -50,7 +53,8 @@ class ImpactRun {
   Recorder recorder_;
   ImpactResult result_;
   WallRun walls_;
-  double now_ = 0;
+  std::vector<RunSample> series_;
+  double now_ = 0, next_sample_ = 0, most_used_ = 0;
   Vec3 impulse_;  ///< that the world's fixed bodies gave, N s
   double largest_momentum_ = 0, largest_momentum_error_ = 0, largest_excess_ = 0;
 };
@@ -67,6 +71,7 @@ ImpactResult ImpactRun::run() {
       static_cast<std::uint64_t>(std::ceil(simulation.duration / simulation.step - 1e-9));
   std::vector<double> milliseconds;
   walls_.launch_due(0);
+  sample();
   for (std::uint64_t i = 1; i <= steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
     step_once(std::min(static_cast<double>(i) * simulation.step, simulation.duration));
@@ -143,16 +148,38 @@ void ImpactRun::record(double time) {
   walls_.record_islands();
   walls_.record_shots();
   note_energy();
+  if (time + 1e-9 >= next_sample_) sample();
+}
+
+EnergyLedger ImpactRun::ledger() const {
+  EnergyLedger e = result_.energy;
+  e.kinetic = world_.kinetic_energy();
+  e.potential = world_.potential_energy() - walls_.baseline();
+  e.numerical = result_.energy_in - e.kinetic - e.potential - e.fracture - e.friction - e.contact;
+  return e;
+}
+
+/// The result's largest utilisation is that since the sample before, until the run ends.
+void ImpactRun::sample() {
+  next_sample_ = now_ + scene_.simulation.history_step;
+  most_used_ = std::max(most_used_, result_.max_utilisation);
+  const EnergyLedger e = ledger();
+  RunSample& s = series_.emplace_back();
+  s.time = now_;
+  s.kinetic = e.kinetic, s.potential = e.potential, s.fracture = e.fracture;
+  s.friction = e.friction, s.contact = e.contact, s.numerical = e.numerical;
+  s.broken_bonds = result_.broken_bonds;
+  s.moving = world_.awake_count();
+  s.max_utilisation = std::exchange(result_.max_utilisation, 0);
 }
 
 ImpactResult ImpactRun::outcome() {
   ImpactResult& r = result_;
+  if (series_.back().time < now_) sample();
+  r.max_utilisation = most_used_;
   r.bodies = world_.body_count();
   r.merged_bodies = world_.merged_count();
-  r.energy.kinetic = world_.kinetic_energy();
-  r.energy.potential = world_.potential_energy() - walls_.baseline();
-  r.energy.numerical = r.energy_in - r.energy.kinetic - r.energy.potential - r.energy.fracture -
-                       r.energy.friction - r.energy.contact;
+  r.energy = ledger();
   r.energy_peak_ratio = 1 + largest_excess_ / std::max(r.energy_in, largest_energy_scale());
   r.momentum_error = largest_momentum_ > 0 ? largest_momentum_error_ / largest_momentum_ : 0;
   const Vec3 impulse = impulse_ + walls_.impulse();
@@ -161,6 +188,8 @@ ImpactResult ImpactRun::outcome() {
   r.hash = recorder_.hash();
   r.recording = recorder_.take();
   r.recording.walls = std::move(recorded);
+  r.recording.seed = scene_.seed;
+  r.recording.series = std::move(series_);
   for (std::uint32_t i = 0; i < scene_.projectiles.size(); ++i)
     r.recording.projectiles.push_back({scene_.projectiles[i], walls_.shot_track(i)});
   return std::move(r);

@@ -134,7 +134,7 @@ void CollapseRun::read_loads(std::vector<Failure>& failures) {
     const JointLoad load = motion_->load(j);
     const Utilisation use = demand_on(j, load);
     state.utilisation = use.total;
-    result_.max_utilisation = std::max(result_.max_utilisation, use.total);
+    note_use(use.total);
     if (!state.is_read || use.total >= static_cast<double>(state.peak.utilisation)) {
       const auto narrow = [](Vec3 v) {
         return std::array{static_cast<float>(v.x), static_cast<float>(v.y),
@@ -187,6 +187,7 @@ bool CollapseRun::yields(const Failure& failure) {
 void CollapseRun::check_posts(std::vector<Failure>& failures) {
   if (params_.skip && posts_known_ && !motion_->any_live()) return;
   posts_known_ = true;
+  posts_use_ = 0;
   for (const std::uint32_t post : posts_.posts()) {
     const std::uint32_t foot = posts_.foot(post);
     if (foot == kNoPart) continue;
@@ -194,7 +195,8 @@ void CollapseRun::check_posts(std::vector<Failure>& failures) {
     if (compression <= 0) continue;
     const double use = compression / posts_.resistance(post);
     posts_known_ &= use < 1;
-    result_.max_utilisation = std::max(result_.max_utilisation, use);
+    note_use(use);
+    posts_use_ = std::max(posts_use_, use);
     if (use < 1) continue;
     for (const std::uint32_t j : posts_.joints_of_buckling(post))
       failures.push_back({j, use, "buckling", scene_.rules.post_rule, "N", false});

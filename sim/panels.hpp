@@ -64,6 +64,7 @@ class Panels {
   double baseline() const { return walls_.baseline() + shift_; }
   Vec3 impulse() const { return walls_.impulse(); }
   const EnergyLedger& energy() const { return result_.energy; }
+  std::uint64_t broken_bonds() const { return result_.broken_bonds; }
   std::uint64_t solves() const { return solves_; }                  ///< of panels' networks
   std::uint64_t solves_skipped() const { return solves_skipped_; }  ///< panels × steps
   std::uint64_t count() const { return panels_.size(); }

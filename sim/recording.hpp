@@ -81,8 +81,22 @@ struct JointSample {
   float force_utilisation = 0, torque_utilisation = 0, utilisation = 0;
 };
 
+/// Numbers of a run at one time. Energies as in the report's ledger, J: from time 0 (for what moves:
+/// from where it started), so that their sum is what has gone in.
+struct RunSample {
+  double time = 0;  ///< s
+  double kinetic = 0, potential = 0, strain = 0, fracture = 0, friction = 0, contact = 0;
+  double damping = 0, plastic = 0;  ///< of buildings
+  double joint = 0;                 ///< of the solver "bullet": lost in rigid joints
+  double numerical = 0;             ///< what remains: the error of the simulation
+  std::uint64_t broken_joints = 0, broken_bonds = 0;
+  std::uint64_t moving = 0;    ///< bodies that are not at rest
+  double max_utilisation = 0;  ///< of any joint, post or bond since the sample before
+};
+
 /// Everything that moved, step by step.
 struct Recording {
+  std::uint64_t seed = 0;     ///< of the scene
   std::vector<double> times;  ///< of every step, s, ascending; times[0] = 0: everything stands
   std::vector<Track> tracks;
   std::vector<RecordedWall> walls;
@@ -92,6 +106,7 @@ struct Recording {
   std::vector<RecordedJoint> joints;
   std::vector<double> sample_times;  ///< of joints' loads, s, ascending
   std::vector<JointSample> samples;  ///< [time][joint]; zero from the time after its break on
+  std::vector<RunSample> series;     ///< every `history_step`, and at the end
 };
 
 /// Range of times in which something moves along its track and the tracks before it; for kNoTrack

@@ -206,6 +206,7 @@ class RigidWorld {
   Vec3 momentum() const;            ///< of all moving bodies, kg m/s
   Vec3 angular_momentum(Vec3 about) const;
   std::uint32_t body_count() const;  ///< moving ones
+  std::uint32_t awake_count() const;  ///< of them: those that are awake
 
  private:
   struct Impl;

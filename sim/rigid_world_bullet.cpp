@@ -1229,6 +1229,10 @@ Vec3 RigidWorld::angular_momentum(Vec3 about) const {
   return sum;
 }
 
+std::uint32_t RigidWorld::awake_count() const {
+  return static_cast<std::uint32_t>(impl_->world.awake.size());
+}
+
 std::uint32_t RigidWorld::body_count() const {
   return impl_->world.moving_count;
 }

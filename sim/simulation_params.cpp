@@ -24,7 +24,8 @@ std::span<const Field<SimulationParams>> fields() {
       {"max_error",
        &P::max_error,
        "",
-       "Relative error asked for; decides how far steps are divided.",
+       "Relative error asked for: given, it chooses step, iterations and solver where they are left "
+       "out, by what was measured; it decides how far steps are divided.",
        {0, 1, true}},
       {"gravity", &P::gravity, "m/s²", "Downwards, along -y.", {0, 1000}},
       {"ground", &P::ground, "", "Whether there is a floor to fall on."},
@@ -78,7 +79,7 @@ std::span<const Field<SimulationParams>> fields() {
        "s",
        "For hybrid: Rayleigh damping, its share of the stiffness.",
        {0, 1}},
-      {"history_step", &P::history_step, "s", "Between samples of the joints' loads.", {1e-4, 10}},
+      {"history_step", &P::history_step, "s", "Between samples of the joints' loads and of the energies.", {1e-4, 10}},
   };
   return table;
 }

@@ -19,13 +19,13 @@ struct SimulationParams {
   double ground_height = 0;        ///< m
   std::int64_t break_depth = 1;    ///< how often a free chunk may break again; 0: never
   bool sleep = true;               ///< bodies at rest leave the solver
+  double history_step = 1.0 / 30;  ///< s between samples of the joints' loads and of the energies
   std::int64_t max_bodies = 4000;  ///< with more, those at rest are fixed; 0: never
   std::string solver = "hybrid";   ///< for buildings
   // Of buildings with the solver "bullet".
   std::string joint_solver = "sequential-impulse";  ///< or nncg, dantzig, lemke
   bool warm_start = true;          ///< joints start from the impulses of the last step
   double settle = 1;               ///< s before time 0, in which joints hold whatever happens
-  double history_step = 1.0 / 30;  ///< s between samples of the joints' loads
   // Of buildings with the solver "hybrid".
   bool quasi_static = false;       ///< the standing frame is in balance at any time: it does not ring
   bool p_delta = false;            ///< second-order effect of axial forces, while nothing rings

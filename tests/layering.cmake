@@ -4,7 +4,7 @@
 set(layers meshing fracture sim io cli)
 set(heavy "CGAL:_cgal" "openvdb:_vdb" "Eigen:_eigen" "bullet:_bullet" "btBullet:_bullet"
           "Bullet:_bullet" "LinearMath:_bullet"
-          "assimp:_assimp" "nlohmann:_json" "CLI:_cli11" "voro..:_voropp" "metis.h:_metis" "immintrin.h:_avx2" "zlib:_zlib")
+          "assimp:_assimp" "nlohmann:_json" "CLI:_cli11" "voro..:_voropp" "metis.h:_metis" "librsvg:_rsvg" "cairo:_rsvg" "immintrin.h:_avx2" "zlib:_zlib")
 set(faults "")
 set(rank 0)
 foreach(layer IN LISTS layers)

@@ -378,6 +378,7 @@ buildings_run() {  # each for the first moments, by its solver: it stands, and i
     grep -q '"building"' "$scene" || continue
     expect_exit 0 "$sunder" collapse "$scene" --set simulation.duration=0.4 -o b.glb -o b.svg \
       --report b.json --history b.csv
+    expect_exit 0 "$sunder" check b.glb
     for key in '"broken_at_rest": 0,' '"broken_by": {' '"weight": ' '"sag": {' '"hash": "' \
                '"warnings": []'; do
       expect_text b.json "$key"
@@ -504,6 +505,122 @@ same_output() {  # two names of one file
   expect_files "later.svg x y"
   expect_exit 0 "$sunder" fracture $wall -o a.svg -o x/a.svg
 }
+# What bash offers for the last word.
+complete_words() {  # words…
+  COMP_WORDS=("$@")
+  COMP_CWORD=$(($# - 1))
+  _sunder
+  [ ${#COMPREPLY[@]} -eq 0 ] || printf '%s ' "${COMPREPLY[@]}"
+}
+expect_offer() {  # offered, words…
+  local got
+  got=$(complete_words "${@:2}")
+  [ "$got" = "${1:+$1 }" ] || fail "bash offers \"$got\" instead of \"$1\" for: ${*:2}"
+}
+completions() {
+  local shell verb verbs option word
+  verbs=$("$sunder" --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1/p')
+  [ "$(echo "$verbs" | wc -l)" -ge 6 ] || fail "the verbs are \"$verbs\""
+  for shell in bash zsh fish; do
+    expect_exit 0 "$sunder" completion $shell
+    cp out script.$shell
+    ! command -v $shell > script.path || $shell -n script.$shell || fail "$shell cannot read its script"
+  done
+  expect_exit 0 "$sunder" schema man
+  sed 's/\\-/-/g' out > script.man
+  for verb in $verbs; do
+    for shell in bash zsh fish man; do expect_text script.$shell "$verb"; done
+    expect_exit 0 "$sunder" $verb --help
+    for option in $(grep -oE '^  (-[a-z],)?--[a-z-]+' out | tr , ' '); do
+      for shell in bash zsh man; do expect_text script.$shell "$option"; done
+      word=${option#--}
+      [ "$word" = "$option" ] && word="-s ${option#-}" || word="-l $word "
+      grep "from $verb'" script.fish | grep -qF -- "$word" || fail "fish does not know $verb $option"
+    done
+  done
+  if command -v groff > script.path; then
+    groff -man -ww -Tutf8 script.man > out 2> err
+    [ -s err ] && fail "groff: $(cat err)"
+    expect_text out "SUNDER(1)"
+    expect_text out "A bug of the program."
+  fi
+  rm script.path
+  # shellcheck source=/dev/null
+  . ./script.bash
+  # shellcheck disable=SC2086
+  for verb in $verbs; do
+    [[ " $(complete_words sunder '') " == *" $verb "* ]] || fail "bash does not offer $verb"
+    expect_exit 0 "$sunder" $verb --help
+    for option in $(grep -oE '^  (-[a-z],)?--[a-z-]+' out | tr , ' '); do
+      [[ " $(complete_words sunder $verb "$option") " == *" $option "* ]] ||
+        fail "bash does not offer $verb $option"
+    done
+  done
+  mkdir folder
+  touch a.json b.obj c.txt wall.glb
+  expect_offer "fracture" sunder fr
+  expect_offer "--hulls --hull-error --hull-vertices" sunder fracture --hull
+  expect_offer "ucx" sunder fracture --hulls u
+  expect_offer "slices spiderweb" sunder fracture --pattern s
+  expect_offer "slices spiderweb" sunder fracture --pattern = s
+  expect_offer "float-glass" sunder fracture --wall 1x1x0.1 --material fl
+  expect_offer "a.json" sunder impact a
+  expect_offer "folder" sunder impact fo
+  expect_offer "" sunder impact b
+  expect_offer "b.obj" sunder fracture b
+  expect_offer "wall.glb" sunder check w
+  expect_offer "x.svg" sunder impact a.json -o x.s
+  expect_offer "x.csv" sunder collapse a.json --history x.c
+  expect_offer "" sunder fracture --seed ''
+  for word in $(complete_words sunder schema ''); do expect_exit 0 "$sunder" schema "$word"; done
+  for word in $(complete_words sunder fracture --hulls ''); do
+    expect_exit 0 "$sunder" fracture --wall 1x1x0.1 --hulls "$word" -o wall.glb
+  done
+  for word in $(complete_words sunder fracture --material ''); do
+    expect_exit 0 "$sunder" fracture --wall 1x1x0.1 --cell 0.5 --material "$word" -o wall.glb
+  done
+  expect_exit 2 "$sunder" completion
+  expect_exit 2 "$sunder" completion csh
+  expect_text err "bash, zsh and fish"
+}
+pictures() {  # without a browser
+  local n width words
+  building_scene
+  cat > w.json << 'END'
+{"sunder": 1, "walls": [{"pattern": {"type": "voronoi-grid", "cell": 0.6}}], "simulation": {"duration": 0.5},
+ "projectiles": [{"position": [3, 1, 2], "velocity": [0, 0, -9]}]}
+END
+  for words in "fracture w.json" "impact w.json" "impact w.json --at 0.4" "collapse s.json --at 0.5" \
+    "collapse s.json --set simulation.duration=0.2"; do
+    # shellcheck disable=SC2086
+    for n in 1 2; do expect_exit 0 "$sunder" $words -o $n.png -o $n.svg --width 300; done
+    cmp 1.png 2.png || fail "$words draws another picture the second time"
+    width=$(od -An -j16 -N4 -tx1 1.png | tr -d ' ')
+    [ "$width" = 0000012c ] || fail "$words: a width of 0x$width instead of 300"
+    # shellcheck disable=SC2086
+    expect_exit 0 env FONTCONFIG_FILE=/nonexistent HOME=/nonexistent "$sunder" $words -o 3.png
+    rm 1.* 2.* 3.*
+  done
+  while IFS='|' read -r words n message; do
+    # shellcheck disable=SC2086
+    expect_exit $n "$sunder" fracture w.json $words
+    expect_text err "$message"
+  done << 'END'
+-o a.png --width 0|2|--width 0: expected a whole number from 64 to 8192
+-o a.png --width 63|2|--width 63: expected a whole number from 64 to 8192
+-o a.png --width 8193|2|--width 8193: expected a whole number from 64 to 8192
+-o a.png --width -5|2|--width -5: expected a whole number from 64 to 8192
+-o a.png --width 1e3|2|--width 1e3: expected a whole number from 64 to 8192
+-o a.png --width 99999999999999999999999|2|--width 99999999999999999999999: expected
+-o a.png --width=|2|--width needs a value
+-o a.png --width 100 --width 200|2|--width is given twice
+-o a.svg --width 100|2|--width is of -o FILE.png, and there is none
+-o a.png -o ./a.png|2|written twice
+-o none/a.png|4|none/a.png: cannot create a file in its folder
+-o /proc/a.png|4|/proc/a.png: cannot create a file in its folder
+END
+  expect_files "s.json w.json"
+}
 schemas() {
   for which in scene material report impact-report collapse-report; do
     expect_exit 0 "$sunder" schema $which
@@ -519,7 +636,9 @@ impact_usage() {
   done << 'END'
 |impact needs a scene file
 s.json|impact has nothing to write: give -o FILE
-s.json -o a.obj|-o a.obj: impact writes .glb .gltf .svg .html .json
+s.json -o a.obj|-o a.obj: impact writes .glb .gltf .svg .png .html .json, and .obj with --at
+s.json -o a.png --at 99|--at 99 is after the end of the run, which lasts 5 s
+s.json --json --at 1|--at says which moment
 s.json -o a.glb -o ./a.glb|./a.glb is written twice
 s.json -o ./s.json|./s.json would overwrite the input
 s.json t.json -o a.glb|"t.json" belongs to no option
@@ -596,8 +715,8 @@ collapse_usage() {
   done << 'END'
 |collapse needs a scene file
 s.json|collapse has nothing to write: give -o FILE
-s.json -o a.stl|-o a.stl: collapse writes .glb .gltf .svg .html .json
-s.json -o a.obj|-o a.obj: collapse writes .glb .gltf .svg .html .json, and .obj with --at
+s.json -o a.stl|-o a.stl: collapse writes .glb .gltf .svg .png .html .json
+s.json -o a.obj|-o a.obj: collapse writes .glb .gltf .svg .png .html .json, and .obj with --at
 s.json -o a.obj -o a.stl --at 1|-o a.stl: collapse writes
 s.json --history x.txt|--history x.txt: a history is a .csv or .json file
 s.json --history x|--history x: a history is a .csv or .json file
@@ -606,8 +725,7 @@ s.json --history a.json --report ./a.json|a.json is written twice
 s.json -o a.glb --at -1|--at -1: expected seconds
 s.json -o a.glb --at 1s|--at 1s: expected seconds
 s.json -o a.glb --at inf|--at inf: expected seconds
-s.json --report r.json --at 1|--at says which moment -o FILE.glb, .gltf, .html or .obj shows
-s.json -o a.svg --at 1|--at says which moment -o FILE.glb, .gltf, .html or .obj shows
+s.json --report r.json --at 1|--at says which moment -o FILE.glb, .gltf, .obj, .svg or .png shows
 s.json -o a.glb --at 1.1|--at 1.1 is after the end of the run, which lasts 1 s
 s.json -o a.glb --at 1 --at 2|--at is given twice
 s.json t.json -o a.glb|"t.json" belongs to no option

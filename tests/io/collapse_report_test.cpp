@@ -13,6 +13,9 @@
 namespace sunder {
 namespace {
 
+const SimulationParams kSimulation{.step = 0.0078125, .iterations = 12};
+const ErrorFront kFront{"collapse", "of the \"sag\"", "", "the rest", {}};
+
 using Json = nlohmann::ordered_json;
 
 CollapseScene sample_scene() {
@@ -63,8 +66,12 @@ CollapseResult sample_result() {
 }
 
 Json json_of(const CollapseScene& scene, const CollapseResult& result) {
-  return Json::parse(
-      collapse_report_json({"0.1.0", scene, result, 1.75, {{"simulate", 1.5}, {"write", 0.25}}}));
+  return Json::parse(collapse_report_json({"0.1.0",
+                                           scene,
+                                           result,
+                                           1.75,
+                                           {{"simulate", 1.5}, {"write", 0.25}},
+                                           {kSimulation, kFront, {0.05, {"step"}, 0.03}}}));
 }
 
 Json sample_json() {
@@ -83,7 +90,10 @@ bool schema_accepts(const Json& report) {
 TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
   const Json expected = Json::parse(R"json({
     "version": "0.1.0", "seed": 7, "steps": 1200, "substeps": 1300, "simulated_s": 5.25,
-    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5}, "bodies": 31,
+    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5},
+    "settings": {"max_error": 0.05, "chosen": ["step"], "step": 0.0078125, "iterations": 12,
+                 "expected_error": 0.03, "met": true, "error_is": "of the \"sag\"",
+                 "not_in_it": "the rest"}, "bodies": 31,
     "merged_bodies": 9,
     "parts_freed": 32, "panels": {"count": 40, "meshed": 41, "broken": 42, "solves": 43},
     "chunks": 44, "chunks_freed": 45, "chunks_split": 46,

@@ -535,13 +535,14 @@ TEST(ExportParts, AMomentOutsideOrInAnotherFormatIsAUsageError) {
     return error_of([&] { export_recording(portal, folder / name, {.at = at}); }, ErrorCode::usage);
   };
   EXPECT_NE(message("a.obj", {}).find("one moment"), std::string::npos);
-  EXPECT_NE(message("a.svg", 0.5).find(".obj"), std::string::npos);
+  EXPECT_NE(message("a.stl", 0.5).find(".obj"), std::string::npos);
   for (const double at : {-0.001, 1.001, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_NE(message("a.glb", at).find("outside the recording"), std::string::npos);
   }
   EXPECT_TRUE(is_recording_suffix(".obj", true));
   EXPECT_FALSE(is_recording_suffix(".obj"));
-  EXPECT_FALSE(is_recording_suffix(".svg", true));
+  EXPECT_TRUE(is_recording_suffix(".svg", true));
+  EXPECT_FALSE(is_recording_suffix(".stl", true));
   EXPECT_TRUE(folder.names().empty());
 }
 

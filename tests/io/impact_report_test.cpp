@@ -16,6 +16,9 @@
 namespace sunder {
 namespace {
 
+const SimulationParams kSimulation{.step = 0.0078125, .iterations = 12};
+const ErrorFront kFront{"impact", "of the \"sag\"", "", "the rest", {}};
+
 using Json = nlohmann::ordered_json;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -25,7 +28,8 @@ ImpactResult sample_result() {
   ImpactResult r;
   r.steps = 1200, r.substeps = 1300, r.simulated_s = 5.25;
   r.step_ms_median = 0.5, r.step_ms_p95 = 1.5, r.step_ms_max = 2.5;
-  r.bodies = 31, r.merged_bodies = 9, r.chunks = 210, r.chunks_freed = 32, r.chunks_split = 3, r.broken_bonds = 77;
+  r.bodies = 31, r.merged_bodies = 9, r.chunks = 210, r.chunks_freed = 32, r.chunks_split = 3,
+  r.broken_bonds = 77;
   r.crack_area = 12.125, r.freed_mass = 640.5, r.largest_freed_mass = 90.25;
   r.freed_by_decade = {11, 12, 13, 14, 15, 16};
   r.max_utilisation = 4.75;
@@ -48,7 +52,12 @@ ImpactResult sample_result() {
 }
 
 std::string sample_text(const ImpactResult& result) {
-  return impact_report_json({"0.1.0", 7, result, 1.75, {{"simulate", 1.5}, {"write", 0.25}}});
+  return impact_report_json({"0.1.0",
+                             7,
+                             result,
+                             1.75,
+                             {{"simulate", 1.5}, {"write", 0.25}},
+                             {kSimulation, kFront, {0.05, {"step"}, 0.03}}});
 }
 
 Json sample_json() {
@@ -67,7 +76,10 @@ bool schema_accepts(const Json& report) {
 TEST(ImpactReport, EveryNumberStandsUnderItsKey) {
   const Json expected = Json::parse(R"json({
     "version": "0.1.0", "seed": 7, "steps": 1200, "substeps": 1300, "simulated_s": 5.25,
-    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5}, "bodies": 31, "merged_bodies": 9,
+    "wall_s": 1.75, "step_ms": {"median": 0.5, "p95": 1.5, "max": 2.5},
+    "settings": {"max_error": 0.05, "chosen": ["step"], "step": 0.0078125, "iterations": 12,
+                 "expected_error": 0.03, "met": true, "error_is": "of the \"sag\"",
+                 "not_in_it": "the rest"}, "bodies": 31, "merged_bodies": 9,
     "chunks": 210, "chunks_freed": 32, "chunks_split": 3, "broken_joints": [], "broken_bonds": 77,
     "crack_area": 12.125, "freed_mass": 640.5,
     "freed": {"largest_mass": 90.25, "by_decade": [11, 12, 13, 14, 15, 16]},

@@ -355,8 +355,8 @@ TEST(StripBuilding, LightIsOnlyAtEndsThatBearSomething) {
   std::ranges::fill(recording.samples, JointSample());
   const std::string without = draw_strip(recording, {.frames = 1});
   // Feet and heads of four posts and both ends of four beams.
-  EXPECT_EQ(count_of(with, "\" opacity=\""), 16u);
-  EXPECT_EQ(count_of(without, "\" opacity=\""), 0u);
+  EXPECT_EQ(count_of(with, "\" stroke-opacity=\"0."), 16u);
+  EXPECT_EQ(count_of(without, "\" stroke-opacity=\"0."), 0u);
 }
 
 TEST(StripBuilding, TwiceGivesTheSameBytesAndManyPartsStaySmall) {
