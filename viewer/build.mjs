@@ -16,10 +16,10 @@ const bundle = await build({
   write: false,
 });
 const script = bundle.outputFiles[0].text.trim();
-const style = (await build({ entryPoints: ["src/page.css"], minify: true, write: false })).outputFiles[0].text.trim();
+const style = (
+  await build({ entryPoints: ["src/page.css"], minify: true, write: false })
+).outputFiles[0].text.trim();
 if (/<\/script|<!--/i.test(script)) throw new Error("the script would end its own element");
 const template = await readFile("page.html", "utf8");
-const page = template
-  .replace("/*style*/", () => style)
-  .replace("/*script*/", () => script);
+const page = template.replace("/*style*/", () => style).replace("/*script*/", () => script);
 await writeFile(output, page);

@@ -179,6 +179,47 @@ version() {
   done
   expect_files ""
 }
+view() {
+  # shellcheck disable=SC2086
+  expect_exit 0 "$sunder" fracture $wall -o a.glb -o a.gltf -o a.obj --report a.json
+  if ! "$sunder" view a.glb -o a.html 2> err; then  # this build has no page
+    expect_exit 4 "$sunder" view a.glb -o a.html
+    expect_text err "nodejs npm"
+    return
+  fi
+  expect_text err "wrote a.html"
+  expect_exit 0 "$sunder" view a.glb a.json a.gltf a.obj -o a.html -o b.html -q
+  [ -s err ] && fail "-q prints"
+  cmp a.html b.html || fail "pages differ"
+  # shellcheck disable=SC2086
+  expect_exit 0 "$sunder" fracture $wall -o direct.html -o one.html
+  cmp <(grep 'id="sunder-file-0"' direct.html) <(grep 'id="sunder-file-0"' one.html) || fail "same asset, other page"
+  expect_exit 2 "$sunder" view -o c.html
+  expect_exit 2 "$sunder" view a.glb
+  expect_exit 2 "$sunder" view a.glb -o c.svg
+  expect_text err "view writes .html"
+  expect_exit 2 "$sunder" view a.txt -o c.html
+  expect_text err ".glb .gltf .obj .stl .ply"
+  expect_exit 2 "$sunder" view a.json a.glb -o c.html
+  expect_text err "there is none"
+  expect_exit 2 "$sunder" view a.glb a.json a.json -o c.html
+  expect_text err "already"
+  expect_exit 2 "$sunder" view a.glb -o c.html --json
+  expect_exit 3 "$sunder" view nothing.glb -o c.html
+  expect_text err "nothing.glb"
+  head -c 1000 a.glb > cut.glb
+  expect_exit 3 "$sunder" view cut.glb -o c.html
+  expect_text err "cut off"
+  echo '{"sunder": 1}' > scene.json
+  expect_exit 3 "$sunder" view a.glb scene.json -o c.html
+  expect_text err "is a scene"
+  rm a.bin
+  expect_exit 3 "$sunder" view a.gltf -o c.html
+  expect_text err "a.bin"
+  expect_exit 4 "$sunder" view a.glb -o nowhere/c.html
+  [ -e c.html ] && fail "half a page"
+  return 0
+}
 usage_errors() {
   expect_exit 2 "$sunder"
   [ -s out ] && fail "help belongs on standard error here"

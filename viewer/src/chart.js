@@ -3,7 +3,16 @@
 import { number, quantity } from "./text.js";
 import { valueAt } from "./series.js";
 
-const kInks = ["#2f7fd6", "#e0702a", "#2ca86e", "#b04fc4", "#c9a227", "#d2405f", "#5c7a9c", "#8a8f98"];
+const kInks = [
+  "#2f7fd6",
+  "#e0702a",
+  "#2ca86e",
+  "#b04fc4",
+  "#c9a227",
+  "#d2405f",
+  "#5c7a9c",
+  "#8a8f98",
+];
 
 export class Chart {
   constructor(series, duration, onSeek) {
@@ -22,7 +31,10 @@ export class Chart {
       const box = this.canvas.getBoundingClientRect();
       onSeek((Math.min(Math.max(event.clientX - box.left, 0), box.width) / box.width) * duration);
     };
-    this.canvas.addEventListener("pointerdown", (event) => (this.canvas.setPointerCapture(event.pointerId), seek(event)));
+    this.canvas.addEventListener(
+      "pointerdown",
+      (event) => (this.canvas.setPointerCapture(event.pointerId), seek(event)),
+    );
     this.canvas.addEventListener("pointermove", (event) => event.buttons > 0 && seek(event));
     this.measure();
   }
@@ -30,16 +42,22 @@ export class Chart {
   addLabel(line, i) {
     const label = this.legend.appendChild(document.createElement("span"));
     if (this.series.lines.length > 1) {
-      label.append(Object.assign(document.createElement("i"), { style: `background:${kInks[i % kInks.length]}` }), `${line.label} `);
+      label.append(
+        Object.assign(document.createElement("i"), {
+          style: `background:${kInks[i % kInks.length]}`,
+        }),
+        `${line.label} `,
+      );
     }
     return label.appendChild(document.createElement("output"));
   }
 
   measure() {
-    this.low = 0, this.high = this.series.limit ?? 0;
+    ((this.low = 0), (this.high = this.series.limit ?? 0));
     for (const line of this.series.lines) {
       for (const value of line.values) {
-        if (Number.isFinite(value)) this.low = Math.min(this.low, value), this.high = Math.max(this.high, value);
+        if (Number.isFinite(value))
+          ((this.low = Math.min(this.low, value)), (this.high = Math.max(this.high, value)));
       }
     }
     // A single shock would flatten everything else.
@@ -57,7 +75,8 @@ export class Chart {
     const context = canvas.getContext("2d");
     const pad = 3 * scale;
     const x = (time) => (time / duration) * width;
-    const y = (value) => height - pad - ((Math.min(value, high) - low) / (high - low)) * (height - 2 * pad);
+    const y = (value) =>
+      height - pad - ((Math.min(value, high) - low) / (high - low)) * (height - 2 * pad);
     const style = getComputedStyle(canvas);
     context.lineWidth = scale;
     context.strokeStyle = style.getPropertyValue("--rule");
@@ -65,7 +84,8 @@ export class Chart {
       if (value === undefined) continue;
       context.setLineDash(value === 0 ? [] : [4 * scale, 3 * scale]);
       context.beginPath();
-      context.moveTo(0, Math.round(y(value)) + 0.5), context.lineTo(width, Math.round(y(value)) + 0.5);
+      (context.moveTo(0, Math.round(y(value)) + 0.5),
+        context.lineTo(width, Math.round(y(value)) + 0.5));
       context.stroke();
     }
     context.setLineDash([]);
@@ -107,6 +127,11 @@ export class Chart {
     context.drawImage(this.picture, 0, 0);
     context.fillStyle = this.ink;
     const width = Math.max(1, devicePixelRatio);
-    context.fillRect((time / this.duration) * (this.canvas.width - width), 0, width, this.canvas.height);
+    context.fillRect(
+      (time / this.duration) * (this.canvas.width - width),
+      0,
+      width,
+      this.canvas.height,
+    );
   }
 }

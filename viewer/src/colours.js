@@ -14,7 +14,8 @@ const ramps = { size: linearRamp(kRamp), speed: linearRamp(kHeat) };
 
 function ramp(stops, t, out) {
   const x = Math.min(Math.max(t, 0), 1) * (stops.length - 1);
-  const i = Math.min(Math.floor(x), stops.length - 2), f = x - i;
+  const i = Math.min(Math.floor(x), stops.length - 2),
+    f = x - i;
   for (let k = 0; k < 3; ++k) out[k] = (1 - f) * stops[i][k] + f * stops[i + 1][k];
   return out;
 }
@@ -28,12 +29,15 @@ export function hueOf(index) {
 
 function logRange(values) {
   const positive = values.filter((v) => v > 0);
-  const low = Math.min(...positive.slice(0, 1)), range = { low, high: low };
-  for (const v of positive) range.low = Math.min(range.low, v), range.high = Math.max(range.high, v);
+  const low = Math.min(...positive.slice(0, 1)),
+    range = { low, high: low };
+  for (const v of positive)
+    ((range.low = Math.min(range.low, v)), (range.high = Math.max(range.high, v)));
   return range;
 }
 
-const kGrey = linear("#8b93a1"), kBall = linear("#5b6470");
+const kGrey = linear("#8b93a1"),
+  kBall = linear("#5b6470");
 
 function swatches(entries) {
   const list = document.createElement("ul");
@@ -52,13 +56,14 @@ function bar(stops, low, high, unit) {
   box.className = "bar";
   const strip = box.appendChild(document.createElement("i"));
   strip.style.background = `linear-gradient(90deg, ${stops.join(", ")})`;
-  for (const value of [low, high]) box.appendChild(document.createElement("span")).textContent = `${number(value)} ${unit}`;
+  for (const value of [low, high])
+    box.appendChild(document.createElement("span")).textContent = `${number(value)} ${unit}`;
   return box;
 }
 
 const css = (rgb) => `#${scratch.setRGB(...rgb).getHexString()}`;
 
-/** What the colours of a model can show. `write(part, rgb, amount)`: amount 0 is the material's own. */
+/** What the colours of a model can show. */
 export class Colours {
   constructor(model) {
     this.model = model;
@@ -69,13 +74,24 @@ export class Colours {
     if (this.hasSizes) this.sizes = logRange(sized.map((part) => part[this.sizeKey]));
     this.speeds = new Float32Array(parts.length);
     this.topSpeed = 0;
-    this.hasLoads = model.motion.isLit || (model.utilisation !== null && parts.some((part) => part.kind === "member"));
     this.modes = [
       { id: "material", label: "Material", has: true },
       { id: "chunk", label: "Chunk", has: true },
       { id: "size", label: "Size", has: this.hasSizes, why: "sizes of parts" },
-      { id: "utilisation", label: "Utilisation", has: this.hasLoads, why: "loads of joints", changes: true },
-      { id: "speed", label: "Speed", has: model.motion.movers.length > 0, why: "motion", changes: true },
+      {
+        id: "utilisation",
+        label: "Utilisation",
+        has: model.motion.isLit,
+        why: "loads of joints",
+        changes: true,
+      },
+      {
+        id: "speed",
+        label: "Speed",
+        has: model.motion.movers.length > 0,
+        why: "motion",
+        changes: true,
+      },
     ];
   }
 
@@ -83,6 +99,7 @@ export class Colours {
     return this.modes.find((mode) => mode.id === id && mode.has) ?? this.modes[0];
   }
 
+  /** Calls write(part, rgb, amount) for all parts; amount 0 leaves the material's own colour. */
   paint(id, time, write) {
     const { parts, motion } = this.model;
     const out = [0, 0, 0];
@@ -114,7 +131,8 @@ export class Colours {
     const speeds = new Float32Array(parts.length);
     for (let k = 1; k <= 24; ++k) {
       motion.speeds((motion.duration * k) / 24, speeds);
-      for (const part of parts) if (part.kind !== "projectile") this.topSpeed = Math.max(this.topSpeed, speeds[part.index]);
+      for (const part of parts)
+        if (part.kind !== "projectile") this.topSpeed = Math.max(this.topSpeed, speeds[part.index]);
     }
     this.topSpeed = Math.max(this.topSpeed, 0.1);
     return this.topSpeed;
@@ -122,13 +140,26 @@ export class Colours {
 
   key(id) {
     const { model } = this;
-    if (id === "size") return bar(kRamp, this.sizes.low, this.sizes.high, this.sizeKey === "mass" ? "kg" : "m³");
+    if (id === "size")
+      return bar(kRamp, this.sizes.low, this.sizes.high, this.sizeKey === "mass" ? "kg" : "m³");
     if (id === "speed") return bar(kHeat, 0, this.speedScale(), "m/s");
     if (id === "utilisation")
-      return swatches([["#e81e16", "force"], ["#1cb034", "torque"], ["#ffd000", "both"], ["#1c54f5", "joint broken"], ["#8b93a1", "no load"]]);
+      return swatches([
+        ["#e81e16", "force"],
+        ["#1cb034", "torque"],
+        ["#ffd000", "both"],
+        ["#1c54f5", "joint broken"],
+        ["#8b93a1", "no load"],
+      ]);
     if (id === "material") {
-      const own = model.geometry.materials.filter((m, i) => model.geometry.lists[i].length > 0);
-      return swatches(own.map((m) => [css(m.colour), m.name.replaceAll("_", " ")]));
+      const { materials, lists, colour } = model.geometry;
+      // A white material takes its look from the colours of vertices.
+      const ownColour = (m, [first]) =>
+        m.colour.map((c, k) => c * (colour ? colour[4 * first + k] / 255 : 1));
+      const own = materials.map((m, i) => [m, lists[i]]).filter(([, list]) => list.length > 0);
+      return swatches(
+        own.map(([m, list]) => [css(ownColour(m, list)), m.name.replaceAll("_", " ")]),
+      );
     }
     return document.createDocumentFragment();
   }

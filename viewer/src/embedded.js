@@ -36,7 +36,7 @@ export async function embeddedBytes({ id, size, words }) {
   const packed = decodeBase64(document.getElementById(id).textContent);
   const stream = new DecompressionStream("deflate-raw");
   const writer = stream.writable.getWriter();
-  writer.write(packed).catch(() => {});  // the reader below tells
+  writer.write(packed).catch(() => {}); // the reader below tells
   writer.close().catch(() => {});
   const bytes = new Uint8Array(size);
   let at = 0;

@@ -14,22 +14,36 @@ function primitiveOf(gltf, primitive, stretch) {
     positions = new Float32Array(positions.length);
     const point = new Vector3();
     for (let v = 0; v < count; ++v)
-      point.fromArray(source.array, 3 * v).applyMatrix4(stretch).toArray(positions, 3 * v);
+      point
+        .fromArray(source.array, 3 * v)
+        .applyMatrix4(stretch)
+        .toArray(positions, 3 * v);
   }
-  const indices = primitive.indices === undefined ? Uint32Array.from({ length: count }, (_, i) => i) : gltf.accessor(primitive.indices).array;
+  const indices =
+    primitive.indices === undefined
+      ? Uint32Array.from({ length: count }, (_, i) => i)
+      : gltf.accessor(primitive.indices).array;
   const extra = {
     material: primitive.material ?? -1,
     colours: attributes.COLOR_0 === undefined ? null : gltf.accessor(attributes.COLOR_0),
     uvs: attributes.TEXCOORD_0 === undefined ? null : gltf.accessor(attributes.TEXCOORD_0).array,
   };
   if (attributes.NORMAL !== undefined && !stretch)
-    return { key: attributes.POSITION, listKey: primitive.indices, positions, normals: gltf.accessor(attributes.NORMAL).array, indices, ...extra };
+    return {
+      key: attributes.POSITION,
+      listKey: primitive.indices,
+      positions,
+      normals: gltf.accessor(attributes.NORMAL).array,
+      indices,
+      ...extra,
+    };
   return flat(positions, indices, extra);
 }
 
 // Every triangle gets vertices of its own, with its normal.
 function flat(positions, indices, extra) {
-  const own = new Float32Array(3 * indices.length), normals = new Float32Array(3 * indices.length);
+  const own = new Float32Array(3 * indices.length),
+    normals = new Float32Array(3 * indices.length);
   for (let i = 0; i < indices.length; i += 3) {
     const n = faceNormal(positions, indices[i], indices[i + 1], indices[i + 2]);
     for (let k = 0; k < 3; ++k) {
@@ -46,8 +60,14 @@ function flat(positions, indices, extra) {
   };
   const { colours, uvs } = extra;
   return {
-    key: null, listKey: null, positions: own, normals, indices: Uint32Array.from(indices, (_, i) => i), material: extra.material,
-    colours: colours && { array: spread(colours.array, colours.width), width: colours.width }, uvs: spread(uvs, 2),
+    key: null,
+    listKey: null,
+    positions: own,
+    normals,
+    indices: Uint32Array.from(indices, (_, i) => i),
+    material: extra.material,
+    colours: colours && { array: spread(colours.array, colours.width), width: colours.width },
+    uvs: spread(uvs, 2),
   };
 }
 
@@ -60,9 +80,15 @@ export class Geometry {
     const { materials = [], images = [], textures = [] } = gltf.json;
     const imageOf = (m) => textures[m.pbrMetallicRoughness?.baseColorTexture?.index]?.source;
     this.materials = [...materials, {}].map((m) => ({
-      name: m.name ?? "no material", colour: m.pbrMetallicRoughness?.baseColorFactor?.slice(0, 3) ?? (m.name ? [1, 1, 1] : [0.55, 0.55, 0.55]),
-      isInner: (m.name ?? "").endsWith("_inner"), isDouble: m.doubleSided === true, metal: m.pbrMetallicRoughness?.metallicFactor ?? 0,
-      image: images[imageOf(m)]?.bufferView, mime: images[imageOf(m)]?.mimeType,
+      name: m.name ?? "no material",
+      colour:
+        m.pbrMetallicRoughness?.baseColorFactor?.slice(0, 3) ??
+        (m.name ? [1, 1, 1] : [0.55, 0.55, 0.55]),
+      isInner: (m.name ?? "").endsWith("_inner"),
+      isDouble: m.doubleSided === true,
+      metal: m.pbrMetallicRoughness?.metallicFactor ?? 0,
+      image: images[imageOf(m)]?.bufferView,
+      mime: images[imageOf(m)]?.mimeType,
     }));
     this.hasTextures = this.materials.some((m) => m.image !== undefined);
     const pieces = this.gather(gltf, parts);
@@ -100,7 +126,9 @@ export class Geometry {
     this.position = new Float32Array(3 * vertices);
     this.normal = new Int8Array(4 * vertices);
     this.part = new Float32Array(vertices);
-    this.colour = pieces.some((piece) => piece.colours) ? new Uint8Array(4 * vertices).fill(255) : null;
+    this.colour = pieces.some((piece) => piece.colours)
+      ? new Uint8Array(4 * vertices).fill(255)
+      : null;
     this.uv = this.hasTextures ? new Float32Array(2 * vertices) : null;
     this.lists = indices.map((count) => new Uint32Array(count));
     this.used = indices.map(() => 0);
@@ -118,18 +146,29 @@ export class Geometry {
     this.position.set(positions, 3 * first);
     this.part.fill(part.index, first, first + count);
     for (let v = 0; v < count; ++v)
-      for (let k = 0; k < 3; ++k) this.normal[4 * (first + v) + k] = Math.round(127 * normals[3 * v + k]);
+      for (let k = 0; k < 3; ++k)
+        this.normal[4 * (first + v) + k] = Math.round(127 * normals[3 * v + k]);
     if (piece.colours) {
       const { array, width } = piece.colours;
       for (let v = 0; v < count; ++v)
-        for (let k = 0; k < 3; ++k) this.colour[4 * (first + v) + k] = Math.round(255 * Math.min(1, Math.max(0, array[width * v + k])));
+        for (let k = 0; k < 3; ++k)
+          this.colour[4 * (first + v) + k] = Math.round(
+            255 * Math.min(1, Math.max(0, array[width * v + k])),
+          );
     }
     if (this.uv && piece.uvs) this.uv.set(piece.uvs.subarray(0, 2 * count), 2 * first);
     this.measure(part.index, positions, part.centroid);
   }
 
   measure(index, positions, centre) {
-    const box = (this.boxes[index] ??= [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity]);
+    const box = (this.boxes[index] ??= [
+      Infinity,
+      Infinity,
+      Infinity,
+      -Infinity,
+      -Infinity,
+      -Infinity,
+    ]);
     for (let i = 0; i < positions.length; i += 3) {
       for (let k = 0; k < 3; ++k) {
         if (positions[i + k] < box[k]) box[k] = positions[i + k];
@@ -144,12 +183,13 @@ export class Geometry {
   // vertices of their own: borders of faces, each once.
   linesOf(pieces) {
     const lines = [];
-    for (let i = 0; i < pieces.length; ) {
+    for (let i = 0; i < pieces.length;) {
       let end = i + 1;
       while (end < pieces.length && pieces[end].part === pieces[i].part) ++end;
       const own = pieces.slice(i, end);
       const { part } = own[0];
-      const isOurs = part.kind !== "part" && part.kind !== "projectile" && part.wall?.extras.kind !== "solid";
+      const isOurs =
+        part.kind !== "part" && part.kind !== "projectile" && part.wall?.extras.kind !== "solid";
       if (isOurs && own.every((piece) => piece.listKey !== null)) this.addBorders(own, lines);
       else if (part.kind !== "projectile") this.addSharp(own, lines);
       i = end;
@@ -162,18 +202,26 @@ export class Geometry {
       let edges = this.borders.get(piece.listKey);
       if (!edges) this.borders.set(piece.listKey, (edges = borderEdges(piece.indices)));
       for (let e = 0; e < edges.length; e += 2) {
-        const a = edges[e], b = edges[e + 1];
+        const a = edges[e],
+          b = edges[e + 1];
         if (isForward(piece.positions, a, b)) lines.push(piece.first + a, piece.first + b);
       }
     }
   }
 
   addSharp(own, lines) {
-    const positions = [], indices = [], groups = [], back = [];
+    const positions = [],
+      indices = [],
+      groups = [],
+      back = [];
     for (const piece of own) {
       const base = back.length;
       for (let v = 0; v < piece.positions.length / 3; ++v) {
-        positions.push(piece.positions[3 * v], piece.positions[3 * v + 1], piece.positions[3 * v + 2]);
+        positions.push(
+          piece.positions[3 * v],
+          piece.positions[3 * v + 1],
+          piece.positions[3 * v + 2],
+        );
         back.push(piece.first + v);
       }
       for (const index of piece.indices) indices.push(base + index);

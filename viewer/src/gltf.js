@@ -3,7 +3,12 @@
 
 const kWidths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 const kArrays = {
-  5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array,
+  5120: Int8Array,
+  5121: Uint8Array,
+  5122: Int16Array,
+  5123: Uint16Array,
+  5125: Uint32Array,
+  5126: Float32Array,
 };
 const kLargest = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 };
 
@@ -52,9 +57,13 @@ class Gltf {
       const target = new Uint8Array(array.buffer);
       const source = new Uint8Array(this.binary.buffer);
       for (let i = 0; i < count; ++i)
-        target.set(source.subarray(start + i * stride, start + i * stride + width * size), i * width * size);
+        target.set(
+          source.subarray(start + i * stride, start + i * stride + width * size),
+          i * width * size,
+        );
     }
-    if (accessor.normalized) array = Float32Array.from(array, (v) => v / kLargest[accessor.componentType]);
+    if (accessor.normalized)
+      array = Float32Array.from(array, (v) => v / kLargest[accessor.componentType]);
     return { array, width, count };
   }
 }
@@ -64,7 +73,8 @@ export function readGltf(bytes, companion) {
   const head = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const text = new TextDecoder();
   if (companion) return new Gltf(JSON.parse(text.decode(bytes)), companion);
-  if (bytes.length < 20 || head.getUint32(0, true) !== 0x46546c67) throw new Error("the file is not a GLB");
+  if (bytes.length < 20 || head.getUint32(0, true) !== 0x46546c67)
+    throw new Error("the file is not a GLB");
   const length = head.getUint32(12, true);
   const json = JSON.parse(text.decode(bytes.subarray(20, 20 + length)));
   const at = 20 + length;

@@ -17,7 +17,16 @@ class Builder {
   constructor(count) {
     const floats = (width) => new Float32Array(width * count);
     this.at = 0;
-    this.columns = { position: floats(3), part: floats(1), other: floats(1), shared: floats(3), facing: floats(3), reach: floats(1), value: floats(1), ended: floats(1) };
+    this.columns = {
+      position: floats(3),
+      part: floats(1),
+      other: floats(1),
+      shared: floats(3),
+      facing: floats(3),
+      reach: floats(1),
+      value: floats(1),
+      ended: floats(1),
+    };
   }
   add(row) {
     for (const [name, column] of Object.entries(this.columns)) {
@@ -30,7 +39,13 @@ class Builder {
   geometry() {
     const geometry = new BufferGeometry();
     for (const [name, column] of Object.entries(this.columns))
-      geometry.setAttribute(name, new BufferAttribute(column, name === "position" || name === "shared" || name === "facing" ? 3 : 1));
+      geometry.setAttribute(
+        name,
+        new BufferAttribute(
+          column,
+          name === "position" || name === "shared" || name === "facing" ? 3 : 1,
+        ),
+      );
     return geometry;
   }
 }
@@ -57,10 +72,27 @@ export class Graph {
     for (const bond of bonds) this.addBond(bond, lines);
     for (const joint of joints) this.addJoint(joint, lines);
     const dots = new Builder(joints.length || this.model.parts.length);
-    if (joints.length > 0) for (const joint of joints) dots.add(this.row(joint, joint.a ?? joint.b, joint.local.get(joint.a ?? joint.b)));
-    else for (const part of this.model.parts) dots.add({ position: part.centroid, part: part.index, other: part.index, shared: [0, 0, 0], facing: [0, 0, 0], reach: 1, value: 0, ended: kNever });
-    this.lines = this.add(new LineSegments(lines.geometry(), graphMaterial({ ...this.uniforms, round: { value: 0 } })));
-    this.dots = this.add(new Points(dots.geometry(), graphMaterial({ ...this.uniforms, round: { value: 1 } })));
+    if (joints.length > 0)
+      for (const joint of joints)
+        dots.add(this.row(joint, joint.a ?? joint.b, joint.local.get(joint.a ?? joint.b)));
+    else
+      for (const part of this.model.parts)
+        dots.add({
+          position: part.centroid,
+          part: part.index,
+          other: part.index,
+          shared: [0, 0, 0],
+          facing: [0, 0, 0],
+          reach: 1,
+          value: 0,
+          ended: kNever,
+        });
+    this.lines = this.add(
+      new LineSegments(lines.geometry(), graphMaterial({ ...this.uniforms, round: { value: 0 } })),
+    );
+    this.dots = this.add(
+      new Points(dots.geometry(), graphMaterial({ ...this.uniforms, round: { value: 1 } })),
+    );
   }
 
   add(object) {
@@ -75,14 +107,25 @@ export class Graph {
     const world = place(restPose(a), 0, ...at, [0, 0, 0]);
     const common = { shared: at, facing: b ? at : world, reach, value: 0, ended: kNever };
     lines.add({ ...common, position: a.centroid, part: a.index, other: b ? b.index : -1 });
-    lines.add({ ...common, position: b ? b.centroid : at, part: (b ?? a).index, other: b ? a.index : -1 });
+    lines.add({
+      ...common,
+      position: b ? b.centroid : at,
+      part: (b ?? a).index,
+      other: b ? a.index : -1,
+    });
   }
 
   row(joint, part, position) {
     const other = part === joint.a ? joint.b : joint.a;
     return {
-      position, part: part.index, other: other ? other.index : -1, shared: joint.local.get(part), facing: other ? joint.local.get(other) : joint.point,
-      reach: kNever, value: 0, ended: joint.broken === Infinity ? kNever : joint.broken,
+      position,
+      part: part.index,
+      other: other ? other.index : -1,
+      shared: joint.local.get(part),
+      facing: other ? joint.local.get(other) : joint.point,
+      reach: kNever,
+      value: 0,
+      ended: joint.broken === Infinity ? kNever : joint.broken,
     };
   }
 
@@ -99,14 +142,14 @@ export class Graph {
   seek(time) {
     const { joints, utilisation } = this.model;
     if (!this.isBuilt || !this.object.visible || !utilisation) return;
-    const dots = this.dots.geometry.getAttribute("value"), lines = this.lines.geometry.getAttribute("value");
+    const dots = this.dots.geometry.getAttribute("value"),
+      lines = this.lines.geometry.getAttribute("value");
     const first = 2 * this.model.bonds.length;
     for (const joint of joints) {
       const value = utilisationAt(utilisation, joint, time);
-      dots.array[joint.index] = value;
-      lines.array.fill(value, first + 4 * joint.index, first + 4 * joint.index + 4);
+      dots.array[joint.slot] = value;
+      lines.array.fill(value, first + 4 * joint.slot, first + 4 * joint.slot + 4);
     }
     dots.needsUpdate = lines.needsUpdate = true;
   }
 }
-

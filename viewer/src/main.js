@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { Chart } from "./chart.js";
+import { element, fillRows, kToggles, modeChoices, toggleChoices } from "./choices.js";
 import { Colours } from "./colours.js";
 import { embeddedBytes, embeddedList } from "./embedded.js";
 import { readGltf } from "./gltf.js";
 import { readModel } from "./model.js";
-import { jointRows, partRows, reportRows } from "./numbers.js";
+import { reportRows } from "./numbers.js";
 import { Player } from "./player.js";
-import { chartsOf } from "./series.js";
+import { Selection } from "./selection.js";
+import { brokenTimes, chartsOf } from "./series.js";
 import { count, seconds } from "./text.js";
 import { World } from "./world.js";
 
 const $ = (id) => document.getElementById(id);
-const kToggles = [
-  ["edges", "Edges", "e"], ["wireframe", "Wireframe", "w"], ["outer", "Outer faces", "o"],
-  ["graph", "Graph", "g"], ["shadows", "Shadows", "s"],
-];
-const kNear = 14;  // CSS pixels within which a click finds a joint
-
 class Page {
   constructor(list) {
     this.list = list;
@@ -26,31 +22,28 @@ class Page {
     this.world = new World($("view"), () => (this.isDirty = true));
     this.player = new Player(() => this.timeChanged());
     this.charts = [];
-    this.selected = null;
+    this.selection = new Selection(this.world, () => (this.isDirty = true));
     this.listen();
   }
 
   listen() {
     new ResizeObserver(() => this.resized()).observe($("stage"));
     $("play").onclick = () => this.player.toggle();
-    $("time").oninput = () => ((this.player.isPlaying = false), this.player.go(Number($("time").value)));
+    $("time").oninput = () => this.player.jump(Number($("time").value));
     $("rate").onchange = () => (this.player.rate = Number($("rate").value));
     $("frame").onclick = () => (this.world.frame(), (this.isDirty = true));
     $("explode").oninput = () => this.explode(Number($("explode").value));
-    $("drop").onclick = () => this.select(null);
     $("file").onchange = () => this.open(Number($("file").value));
     addEventListener("keydown", (event) => this.key(event));
-    let down = null;
-    $("view").addEventListener("pointerdown", (event) => (down = event));
-    $("view").addEventListener("pointerup", (event) => {
-      if (down && event.button === 0 && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 4) this.click(event);
-      down = null;
-    });
   }
 
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || !this.model) return;
-    const isField = /^(SELECT|TEXTAREA)$/.test(event.target.tagName) || (event.target.tagName === "INPUT" && event.target.type === "range" && event.target.id !== "time");
+    const isField =
+      /^(SELECT|TEXTAREA)$/.test(event.target.tagName) ||
+      (event.target.tagName === "INPUT" &&
+        event.target.type === "range" &&
+        event.target.id !== "time");
     if (isField && /^(Arrow|Home|End)/.test(event.key)) return;
     if (event.key === " " && /^(BUTTON|SUMMARY|SELECT)$/.test(event.target.tagName)) return;
     const action = this.actionOf(event);
@@ -61,13 +54,19 @@ class Page {
 
   actionOf({ key, shiftKey }) {
     const { player } = this;
-    const toggle = kToggles.find(([, , letter]) => letter === key.toLowerCase());
-    if (toggle && !$(`toggle-${toggle[0]}`).disabled) return () => $(`toggle-${toggle[0]}`).click();
+    const toggle = kToggles.find(({ letter }) => letter === key.toLowerCase());
+    if (toggle) return () => $(`toggle-${toggle.id}`).click();
     const mode = this.colours.modes[Number(key) - 1];
     if (mode?.has) return () => this.setMode(mode.id);
     return {
-      " ": () => player.toggle(), ArrowRight: () => player.step(shiftKey ? 10 : 1), ArrowLeft: () => player.step(shiftKey ? -10 : -1),
-      Home: () => player.go(0), End: () => player.go(player.duration), f: () => $("frame").click(), F: () => $("frame").click(), Escape: () => this.select(null),
+      " ": () => player.toggle(),
+      ArrowRight: () => player.step(shiftKey ? 10 : 1),
+      ArrowLeft: () => player.step(shiftKey ? -10 : -1),
+      Home: () => player.go(0),
+      End: () => player.go(player.duration),
+      f: () => $("frame").click(),
+      F: () => $("frame").click(),
+      Escape: () => this.selection.select(null),
     }[key];
   }
 
@@ -84,7 +83,11 @@ class Page {
       this.world.show(this.model);
       this.fill(entry);
       this.say("");
-      this.tell({ unpack: unpacked - start, read: read - unpacked, build: performance.now() - read });
+      this.tell({
+        unpack: unpacked - start,
+        read: read - unpacked,
+        build: performance.now() - read,
+      });
     } catch (error) {
       this.say(`${entry.name}: ${error.message}`, true);
       console.error(error);
@@ -93,7 +96,8 @@ class Page {
 
   /** Measured times, in ms, for whoever looks at the page with tools. */
   tell(times) {
-    for (const [name, value] of Object.entries(times)) document.documentElement.dataset[name] = value.toFixed(1);
+    for (const [name, value] of Object.entries(times))
+      document.documentElement.dataset[name] = value.toFixed(1);
   }
 
   say(text, isError = false) {
@@ -103,7 +107,6 @@ class Page {
 
   fill(entry) {
     const { model } = this;
-    this.selected = null;
     this.colours = new Colours(model);
     $("name").textContent = entry.name;
     document.title = `${entry.name} – sunder`;
@@ -112,9 +115,7 @@ class Page {
     this.player.rate = Number($("rate").value);
     $("timeline").hidden = $("time").disabled = model.motion.duration === 0;
     $("time").max = model.motion.duration;
-    this.world.graph.isEmpty && (this.shown.graph = false);
-    this.fillModes();
-    this.fillToggles();
+    this.fillChoices();
     this.fillCharts();
     this.fillReport();
     $("explode").value = 0;
@@ -123,7 +124,7 @@ class Page {
     this.setMode(this.colours.mode(mode).id);
     if (this.asked.has("explode")) this.explode(Number(this.asked.get("explode")));
     this.player.go(Number(this.asked.get("t") ?? 0));
-    this.select(null);
+    this.selection.reset(model, this.colours.speeds);
     this.resized();
     this.world.frame();
     this.isDirty = true;
@@ -132,37 +133,32 @@ class Page {
   countsText() {
     const { parts, motion, joints, scene } = this.model;
     const of = (kind) => parts.filter((part) => part.kind === kind).length;
-    const words = [["chunk", "chunk"], ["member", "member"], ["panel", "panel"], ["projectile", "projectile"], ["part", "mesh"]];
-    const texts = words.filter(([kind]) => of(kind) > 0).map(([kind, word]) => count(of(kind), word).replace("meshs", "meshes"));
+    const words = [
+      ["chunk", "chunk"],
+      ["member", "member"],
+      ["panel", "panel"],
+      ["projectile", "projectile"],
+      ["part", "mesh"],
+    ];
+    const texts = words
+      .filter(([kind]) => of(kind) > 0)
+      .map(([kind, word]) => count(of(kind), word).replace("meshs", "meshes"));
     const jointCount = joints.length || scene.joints;
     if (jointCount) texts.push(count(jointCount, "joint"));
     if (motion.duration > 0) texts.push(`${motion.duration.toFixed(2)} s`);
     return texts.join(" · ");
   }
 
-  fillModes() {
-    $("modes").replaceChildren(...this.colours.modes.map((mode, i) => {
-      const label = document.createElement("label");
-      const input = Object.assign(document.createElement("input"), { type: "radio", name: "mode", value: mode.id, disabled: !mode.has, id: `mode-${mode.id}` });
-      input.onchange = () => this.setMode(mode.id);
-      label.title = mode.has ? `Key ${i + 1}` : `This file has no ${mode.why}`;
-      label.append(input, Object.assign(document.createElement("span"), { textContent: mode.label }));
-      return label;
-    }));
-  }
-
-  fillToggles() {
-    $("toggles").replaceChildren(...kToggles.map(([id, text, letter]) => {
-      const label = document.createElement("label");
-      const input = Object.assign(document.createElement("input"), { type: "checkbox", id: `toggle-${id}`, checked: this.shown[id] });
-      if (id === "graph") input.disabled = this.world.graph.isEmpty;
-      if (id === "outer") input.disabled = !this.model.geometry.materials.some((m, i) => m.isInner && this.model.geometry.lists[i].length > 0);
-      if (input.disabled) label.title = id === "graph" ? "This file has no bonds or joints" : "This file has no inner faces";
-      else label.title = `Key ${letter.toUpperCase()}`;
-      input.onchange = () => this.toggle(id, input.checked);
-      label.append(input, Object.assign(document.createElement("span"), { textContent: text }));
-      return label;
-    }));
+  fillChoices() {
+    const { model, colours, world, shown } = this;
+    const { materials, lists } = model.geometry;
+    const missing = [];
+    if (world.graph.isEmpty) missing.push("graph");
+    if (!materials.some((m, i) => m.isInner && lists[i].length > 0)) missing.push("outer");
+    for (const id of missing) shown[id] = id === "outer";
+    $("modes").replaceChildren(...modeChoices(colours.modes, (id) => this.setMode(id)));
+    const toggles = toggleChoices(shown, missing, (id, isOn) => this.toggle(id, isOn));
+    $("toggles").replaceChildren(...toggles);
   }
 
   toggle(id, isOn) {
@@ -175,11 +171,13 @@ class Page {
 
   fillCharts() {
     const { charts, missing } = chartsOf(this.model);
-    this.charts = charts.map((series) => new Chart(series, this.model.motion.duration, (time) => ((this.player.isPlaying = false), this.player.go(time))));
+    const { duration } = this.model.motion;
+    this.charts = charts.map((series) => new Chart(series, duration, (t) => this.player.jump(t)));
     $("charts").replaceChildren(...this.charts.map((chart) => chart.element));
     $("charts").hidden = this.charts.length === 0;
-    const isRun = this.model.motion.duration > 0;
-    $("missing").textContent = isRun && missing.length > 0 ? `The file has no time series of ${missing.join(", ").replace(/, ([^,]*)$/, " and $1")}.` : "";
+    const list = missing.join(", ").replace(/, ([^,]*)$/, " and $1");
+    const isTold = duration > 0 && missing.length > 0;
+    $("missing").textContent = isTold ? `The file has no time series of ${list}.` : "";
     requestAnimationFrame(() => this.charts.forEach((chart) => chart.paint()));
     this.markEvents();
   }
@@ -187,27 +185,23 @@ class Page {
   /** Ticks on the timeline where something broke. */
   markEvents() {
     const canvas = $("marks");
-    const width = (canvas.width = Math.round(canvas.clientWidth * devicePixelRatio)), height = (canvas.height = Math.round(canvas.clientHeight * devicePixelRatio));
+    const width = (canvas.width = Math.round(canvas.clientWidth * devicePixelRatio));
+    const height = (canvas.height = Math.round(canvas.clientHeight * devicePixelRatio));
     const { model } = this;
     if (!width || !model?.motion.duration) return;
-    const joints = model.joints.length > 0 ? model.joints.map((joint) => joint.broken) : (model.scene.broken_joints ?? []).map((joint) => joint.time);
-    const times = [...joints, ...model.events.map((event) => event.time)].filter(Number.isFinite);
+    const times = [...brokenTimes(model), ...model.events.map((event) => event.time)];
     const context = canvas.getContext("2d");
     context.fillStyle = getComputedStyle(canvas).color;
     context.globalAlpha = times.length > 60 ? 0.35 : 0.7;
-    for (const time of times) context.fillRect((time / model.motion.duration) * (width - 2), 0, Math.max(1, devicePixelRatio), height);
+    const thickness = Math.max(1, devicePixelRatio);
+    for (const time of times.filter(Number.isFinite))
+      context.fillRect((time / model.motion.duration) * (width - 2), 0, thickness, height);
   }
 
   fillReport() {
     const rows = reportRows(this.model.report);
     $("report").hidden = rows.length === 0;
-    this.fillList($("reported"), rows);
-  }
-
-  fillList(list, rows) {
-    list.replaceChildren(...rows.flatMap(([name, text]) => [
-      Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: text }),
-    ]));
+    fillRows($("reported"), rows);
   }
 
   setMode(id) {
@@ -219,7 +213,9 @@ class Page {
   }
 
   paint() {
-    this.colours.paint(this.mode.id, this.player.time, (part, rgb, amount) => this.world.paint(part, rgb, amount));
+    this.colours.paint(this.mode.id, this.player.time, (part, rgb, amount) =>
+      this.world.paint(part, rgb, amount),
+    );
     this.isDirty = true;
   }
 
@@ -243,63 +239,8 @@ class Page {
     document.body.classList.toggle("playing", isPlaying);
     $("play").setAttribute("aria-label", isPlaying ? "Stop" : "Play");
     for (const chart of this.charts) chart.seek(time);
-    this.tellSelected();
+    this.selection.tell(time);
     this.isDirty = true;
-  }
-
-  async click(event) {
-    if (!this.model) return;
-    const box = $("view").getBoundingClientRect();
-    const x = event.clientX - box.left, y = event.clientY - box.top;
-    this.select(this.jointAt(x, y) ?? (await this.world.picker.at(x, y)));
-  }
-
-  jointAt(x, y) {
-    if (!this.shown.graph) return null;
-    let best = null, nearest = kNear;
-    for (const joint of this.model.joints) {
-      const at = this.world.onScreen(joint);
-      const distance = at ? Math.hypot(at.x - x, at.y - y) : Infinity;
-      if (distance < nearest) (nearest = distance), (best = joint);
-    }
-    return best;
-  }
-
-  /** Shows the numbers of a part or joint; null: of nothing. */
-  select(thing) {
-    for (const part of this.partsOf(this.selected)) this.world.mark(part, false);
-    this.selected = thing;
-    for (const part of this.partsOf(thing)) this.world.mark(part, true);
-    $("selection").hidden = !thing;
-    if (thing) {
-      $("picked").textContent = thing.name;
-      this.fillRelated(thing);
-      this.tellSelected();
-    }
-    this.isDirty = true;
-  }
-
-  partsOf(thing) {
-    if (!thing) return [];
-    return thing.point ? [thing.a, thing.b].filter(Boolean) : [thing];
-  }
-
-  fillRelated(thing) {
-    const others = thing.point ? this.partsOf(thing) : (thing.joints ?? []);
-    $("related").replaceChildren(...others.map((other) => {
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: other.name });
-      button.onclick = () => this.select(other);
-      return button;
-    }));
-  }
-
-  tellSelected() {
-    const { selected, model, player } = this;
-    if (!selected) return;
-    if (selected.point) return this.fillList($("numbers"), jointRows(selected, model, player.time));
-    const { speeds } = this.colours;
-    if (this.mode.id !== "speed") speeds[selected.index] = model.motion.speedOf(selected, player.time);
-    this.fillList($("numbers"), partRows(selected, model, player.time, speeds));
   }
 
   resized() {
@@ -312,7 +253,8 @@ class Page {
     if (this.model && Math.abs(aspect - width / height) > 0.3) this.world.frame();
     for (const chart of this.charts) chart.paint();
     this.markEvents();
-    if (document.documentElement.dataset.ready) this.draw();  // at once, or it would be blank for a frame
+    // At once, or the canvas would be blank for a frame.
+    if (document.documentElement.dataset.ready) this.draw();
   }
 
   draw() {
@@ -345,13 +287,16 @@ async function start() {
   try {
     page = new Page(list);
   } catch (error) {
-    $("message").textContent = `This page needs WebGL 2, which this browser does not give it: ${error.message}`;
+    $("message").textContent =
+      `This page needs WebGL 2, which this browser does not give it: ${error.message}`;
     $("message").classList.add("error");
     return;
   }
   if (list.length === 0) return page.say("There is no file in this page.", true);
   $("files").hidden = list.length === 1;
-  $("file").replaceChildren(...list.map((entry, i) => Object.assign(document.createElement("option"), { value: i, textContent: entry.name })));
+  $("file").replaceChildren(
+    ...list.map((entry, i) => element("option", { value: i, textContent: entry.name })),
+  );
   await page.open(0);
   page.run();
 }

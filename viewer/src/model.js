@@ -10,14 +10,21 @@ const kGround = -1;
 
 function poseOf(node) {
   if (node.matrix) return poseOfMatrix(new Matrix4().fromArray(node.matrix));
-  const t = node.translation ?? [0, 0, 0], r = node.rotation ?? [0, 0, 0, 1], s = node.scale ?? [1, 1, 1];
+  const t = node.translation ?? [0, 0, 0],
+    r = node.rotation ?? [0, 0, 0, 1],
+    s = node.scale ?? [1, 1, 1];
   const isUniform = s[0] === s[1] && s[1] === s[2];
-  return { pose: [...t, isUniform ? s[0] : 1, ...r], stretch: isUniform ? null : new Matrix4().makeScale(...s) };
+  return {
+    pose: [...t, isUniform ? s[0] : 1, ...r],
+    stretch: isUniform ? null : new Matrix4().makeScale(...s),
+  };
 }
 
 // A matrix as a pose and, if it is none, what it does to the vertices before.
 function poseOfMatrix(matrix) {
-  const t = new Vector3(), r = new Quaternion(), s = new Vector3();
+  const t = new Vector3(),
+    r = new Quaternion(),
+    s = new Vector3();
   matrix.decompose(t, r, s);
   const rigid = new Matrix4().compose(t, r, new Vector3(1, 1, 1));
   return { pose: [t.x, t.y, t.z, 1, r.x, r.y, r.z, r.w], stretch: rigid.invert().multiply(matrix) };
@@ -41,7 +48,9 @@ class PartList {
     this.walls = [];
     const scene = json.scenes?.[json.scene ?? 0];
     const roots = scene?.nodes ?? (json.nodes ?? []).map((_, i) => i);
-    const stack = roots.map((node) => ({ node, parent: kIdentity, wall: null, stretch: null })).reverse();
+    const stack = roots
+      .map((node) => ({ node, parent: kIdentity, wall: null, stretch: null }))
+      .reverse();
     while (stack.length > 0) this.visit(stack.pop(), stack);
   }
 
@@ -50,7 +59,9 @@ class PartList {
     const name = node.name ?? `node ${index}`;
     const extras = node.extras?.sunder ?? {};
     const own = poseOf(node);
-    const pull = [stretch, own.stretch].filter(Boolean).reduce((a, b) => a.clone().multiply(b), new Matrix4());
+    const pull = [stretch, own.stretch]
+      .filter(Boolean)
+      .reduce((a, b) => a.clone().multiply(b), new Matrix4());
     const isStretched = stretch || own.stretch;
     if (extras.sunder !== undefined) {
       wall = { name, extras, parts: [], index: this.walls.length };
@@ -58,9 +69,19 @@ class PartList {
     }
     if (node.mesh !== undefined && !isHull(name)) {
       const part = {
-        index: this.parts.length, node: index, name, extras, wall, kind: kindOf(extras, wall), mesh: node.mesh,
-        parentPose: Float64Array.from(parent), pose: Float64Array.from(own.pose), stretch: isStretched ? pull : null,
-        mass: extras.mass, volume: extras.volume, centroid: extras.centroid ?? [0, 0, 0],
+        index: this.parts.length,
+        node: index,
+        name,
+        extras,
+        wall,
+        kind: kindOf(extras, wall),
+        mesh: node.mesh,
+        parentPose: Float64Array.from(parent),
+        pose: Float64Array.from(own.pose),
+        stretch: isStretched ? pull : null,
+        mass: extras.mass,
+        volume: extras.volume,
+        centroid: extras.centroid ?? [0, 0, 0],
         halfLength: (extras.length ?? 0) / 2,
       };
       this.parts.push(part);
@@ -70,7 +91,12 @@ class PartList {
     const world = [...kIdentity];
     compose(parent, 0, own.pose, 0, world, 0);
     for (let i = node.children.length - 1; i >= 0; --i)
-      stack.push({ node: node.children[i], parent: world, wall, stretch: isStretched ? pull : null });
+      stack.push({
+        node: node.children[i],
+        parent: world,
+        wall,
+        stretch: isStretched ? pull : null,
+      });
   }
 }
 
@@ -81,9 +107,11 @@ function readBonds(gltf, walls) {
     const table = wall.extras.bonds;
     if (!table?.count || table.pairs === undefined) continue;
     const pairs = gltf.accessor(table.pairs).array;
-    const area = gltf.accessor(table.area).array, centroid = gltf.accessor(table.centroid).array;
+    const area = gltf.accessor(table.area).array,
+      centroid = gltf.accessor(table.centroid).array;
     for (let i = 0; i < table.count; ++i) {
-      const a = wall.parts[pairs[2 * i]], b = wall.parts[pairs[2 * i + 1]];
+      const a = wall.parts[pairs[2 * i]],
+        b = wall.parts[pairs[2 * i + 1]];
       if (!a) continue;
       const at = [centroid[3 * i], centroid[3 * i + 1], centroid[3 * i + 2]];
       bonds.push({ a, b: b ?? null, area: area[i], at });
@@ -94,37 +122,57 @@ function readBonds(gltf, walls) {
   return bonds;
 }
 
-function readJoints(gltf, parts, motion) {
+function readJoints(gltf, parts) {
   const table = gltf.json.extras?.sunder?.joints;
   if (!table?.names?.length || !table.parts || !table.points) return [];
   const byNode = new Map(parts.map((part) => [part.node, part]));
-  return table.names.map((name, index) => {
-    const [a, b] = table.parts[index].map((node) => (node === kGround ? null : byNode.get(node) ?? null));
-    const joint = { index, name, a, b, ends: table.ends?.[index] ?? [], point: table.points[index], broken: table.broken?.[index] ?? Infinity };
-    for (const part of [a, b]) {
-      if (!part) continue;
-      (part.joints ??= []).push(joint);
-      const state = [0, 0, 0, 1, 0, 0, 0, 1];
-      compose(part.parentPose, 0, part.pose, 0, state, 0);
-      (joint.local ??= new Map()).set(part, unplace(state, 0, ...joint.point, [0, 0, 0]));
-    }
-    return joint;
-  });
+  const joints = table.names
+    .map((name, index) => {
+      const [a, b] = table.parts[index].map((node) =>
+        node === kGround ? null : (byNode.get(node) ?? null),
+      );
+      const joint = {
+        index,
+        name,
+        a,
+        b,
+        ends: table.ends?.[index] ?? [],
+        point: table.points[index],
+        broken: table.broken?.[index] ?? Infinity,
+      };
+      for (const part of [a, b]) {
+        if (!part) continue;
+        (part.joints ??= []).push(joint);
+        const state = [0, 0, 0, 1, 0, 0, 0, 1];
+        compose(part.parentPose, 0, part.pose, 0, state, 0);
+        (joint.local ??= new Map()).set(part, unplace(state, 0, ...joint.point, [0, 0, 0]));
+      }
+      return joint;
+    })
+    .filter((joint) => joint.local);
+  joints.forEach((joint, slot) => (joint.slot = slot));
+  return joints;
 }
 
 /** Utilisation of all joints over time; null: the file has none. */
-function readUtilisation(gltf, jointCount) {
+function readUtilisation(gltf) {
   const table = gltf.json.extras?.sunder?.joints;
   const block = table?.utilisation;
-  if (!block || !table.times?.length || jointCount === 0) return null;
+  if (!block || !table.times?.length) return null;
   const rows = gltf.numbers(block.bufferView, block.componentType ?? 5123);
-  return { times: Float64Array.from(table.times), rows, scale: block.scale ?? 0.001, jointCount };
+  return {
+    times: Float64Array.from(table.times),
+    rows,
+    scale: block.scale ?? 0.001,
+    jointCount: table.names.length,
+  };
 }
 
 /** The utilisation of a joint at the sample at or after a time. */
 export function utilisationAt(table, joint, time) {
   if (!table) return undefined;
-  let low = 0, high = table.times.length - 1;
+  let low = 0,
+    high = table.times.length - 1;
   while (low < high) {
     const middle = (low + high) >> 1;
     if (table.times[middle] < time - 1e-9) low = middle + 1;
@@ -162,7 +210,8 @@ function explodeWays(parts, motion) {
 
 // Box of what is there at the start (projectiles aside unless there is nothing else).
 function boxOf(parts, motion, geometry) {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  const low = [Infinity, Infinity, Infinity],
+    high = [-Infinity, -Infinity, -Infinity];
   const point = [0, 0, 0];
   const isSeen = (part) => part.kind !== "projectile";
   const seen = parts.some(isSeen) ? parts.filter(isSeen) : parts;
@@ -170,8 +219,16 @@ function boxOf(parts, motion, geometry) {
     const box = geometry.boxes[part.index];
     if (!box) continue;
     for (let corner = 0; corner < 8; ++corner) {
-      place(motion.state, part.index * 16, box[corner & 1 ? 3 : 0], box[corner & 2 ? 4 : 1], box[corner & 4 ? 5 : 2], point);
-      for (let k = 0; k < 3; ++k) low[k] = Math.min(low[k], point[k]), high[k] = Math.max(high[k], point[k]);
+      place(
+        motion.state,
+        part.index * 16,
+        box[corner & 1 ? 3 : 0],
+        box[corner & 2 ? 4 : 1],
+        box[corner & 4 ? 5 : 2],
+        point,
+      );
+      for (let k = 0; k < 3; ++k)
+        ((low[k] = Math.min(low[k], point[k])), (high[k] = Math.max(high[k], point[k])));
     }
   }
   return low[0] <= high[0] ? { low, high } : { low: [-1, -1, -1], high: [1, 1, 1] };
@@ -197,19 +254,29 @@ export function readModel(gltf, report) {
   const geometry = new Geometry(gltf, parts);
   for (const part of parts) {
     const box = geometry.boxes[part.index];
-    if (part.kind === "part" && box) part.centroid = [0, 1, 2].map((k) => (box[k] + box[k + 3]) / 2);
+    if (part.kind === "part" && box)
+      part.centroid = [0, 1, 2].map((k) => (box[k] + box[k + 3]) / 2);
   }
   const motion = new Motion(gltf, parts);
-  const joints = readJoints(gltf, parts, motion);
+  const joints = readJoints(gltf, parts);
   const sunder = gltf.json.extras?.sunder ?? {};
   const scene = gltf.json.scenes?.[gltf.json.scene ?? 0]?.extras?.sunder ?? {};
   const model = {
-    gltf, parts, walls, geometry, motion, joints, report, scene,
-    bonds: readBonds(gltf, walls), utilisation: readUtilisation(gltf, joints.length),
-    run: sunder.run ?? null, events: sunder.events ?? [],
-    explode: explodeWays(parts, motion), box: boxOf(parts, motion, geometry),
+    gltf,
+    parts,
+    walls,
+    geometry,
+    motion,
+    joints,
+    report,
+    scene,
+    bonds: readBonds(gltf, walls),
+    utilisation: readUtilisation(gltf),
+    run: sunder.run?.times ? sunder.run : null,
+    events: sunder.events ?? [],
+    explode: explodeWays(parts, motion),
+    box: boxOf(parts, motion, geometry),
   };
   model.ground = groundHeight(model);
   return model;
 }
-

@@ -2,7 +2,7 @@
 // Plays a file's animation: where every part is at a time, and how its ends are lit.
 import { compose, place } from "./pose.js";
 
-/** Numbers per part in Motion.state: pose (8), then end 0 and end 1: force, torque, failed, has-moved. */
+/** Numbers per part in Motion.state: pose (8), then of end 0 and 1 force, torque, failed, moved. */
 export const kStateSize = 16;
 
 class Track {
@@ -20,7 +20,8 @@ class Track {
       if (k + 2 <= last && time >= times[k + 1] && time < times[k + 2]) {
         ++k;
       } else {
-        let low = 0, high = times.length;  // first key after the time
+        let low = 0,
+          high = times.length; // first key after the time
         while (low < high) {
           const middle = (low + high) >> 1;
           if (times[middle] <= time) low = middle + 1;
@@ -34,7 +35,8 @@ class Track {
   }
 
   evaluate(time) {
-    const k = this.seek(time), { values, width, now, times } = this;
+    const k = this.seek(time),
+      { values, width, now, times } = this;
     const from = k * width;
     const isEnd = k + 1 >= times.length || time <= times[k] || this.isStep;
     if (isEnd) {
@@ -48,9 +50,10 @@ class Track {
       for (let i = 0; i < 4; ++i) along += values[from + i] * values[from + 4 + i];
       if (along < 0) sign = -1;
     }
-    for (let i = 0; i < width; ++i) now[i] = (1 - t) * values[from + i] + sign * t * values[from + width + i];
+    for (let i = 0; i < width; ++i)
+      now[i] = (1 - t) * values[from + i] + sign * t * values[from + width + i];
     if (!this.isRotation) return;
-    // Between two steps a chunk turns little: the straight way, made a unit again, is right to 1e-4.
+    // Between two steps a chunk turns little: the straight way, made a unit again, will do.
     const size = Math.hypot(now[0], now[1], now[2], now[3]) || 1;
     for (let i = 0; i < 4; ++i) now[i] /= size;
   }
@@ -81,8 +84,10 @@ export class Motion {
       for (const { sampler: index, target } of animation.channels) {
         const part = byNode.get(target.node);
         const sampler = animation.samplers[index];
-        if (!part || !["translation", "rotation", "scale", "weights"].includes(target.path)) continue;
-        if (sampler.interpolation === "CUBICSPLINE") throw new Error("the animation has splines, which this page does not play");
+        if (!part || !["translation", "rotation", "scale", "weights"].includes(target.path))
+          continue;
+        if (sampler.interpolation === "CUBICSPLINE")
+          throw new Error("the animation has splines, which this page does not play");
         const key = `${sampler.input} ${sampler.output} ${sampler.interpolation}`;
         if (!known.has(key)) known.set(key, this.track(gltf, sampler, target.path));
         (part.tracks ??= {})[target.path] = known.get(key);
@@ -105,7 +110,13 @@ export class Motion {
     const output = gltf.accessor(sampler.output);
     const width = (output.count * output.width) / times.length;
     this.duration = Math.max(this.duration, times[times.length - 1]);
-    return new Track(times, output.array, width, sampler.interpolation === "STEP", path === "rotation");
+    return new Track(
+      times,
+      output.array,
+      width,
+      sampler.interpolation === "STEP",
+      path === "rotation",
+    );
   }
 
   /** All times at which something has a key, ascending. */
@@ -113,7 +124,7 @@ export class Motion {
     let longest = [];
     for (const track of this.tracks) if (track.times.length > longest.length) longest = track.times;
     const all = new Set(longest);
-    all.add(0), all.add(this.duration);
+    (all.add(0), all.add(this.duration));
     return Float64Array.from(all).sort();
   }
 
@@ -127,7 +138,8 @@ export class Motion {
     const { local, state } = this;
     for (const part of this.movers) {
       const { translation: t, rotation: r, scale: s, weights: w } = part.tracks;
-      const at = 8 * part.index, to = part.index * kStateSize;
+      const at = 8 * part.index,
+        to = part.index * kStateSize;
       if (t) for (let k = 0; k < 3; ++k) local[at + k] = t.now[k];
       if (s) local[at + 3] = s.now[0];
       if (r) for (let k = 0; k < 4; ++k) local[at + 4 + k] = r.now[k];
@@ -162,10 +174,11 @@ export class Motion {
     return Math.max(this.duration / Math.max(1, this.times.length - 1), 1e-6);
   }
 
-  /** Speed in m/s of every part's centre of mass over the last step before a time; ends at that time. */
+  /** Speed in m/s of all parts' centres of mass over the last step before a time. */
   speeds(time, out) {
     const step = this.step();
-    const earlier = Math.max(0, time - step), later = earlier + step;
+    const earlier = Math.max(0, time - step),
+      later = earlier + step;
     const before = new Float64Array(3 * this.movers.length);
     const point = [0, 0, 0];
     this.seek(earlier);
@@ -174,7 +187,12 @@ export class Motion {
     out.fill(0);
     this.movers.forEach((part, i) => {
       this.centre(part, point);
-      out[part.index] = Math.hypot(point[0] - before[3 * i], point[1] - before[3 * i + 1], point[2] - before[3 * i + 2]) / step;
+      out[part.index] =
+        Math.hypot(
+          point[0] - before[3 * i],
+          point[1] - before[3 * i + 1],
+          point[2] - before[3 * i + 2],
+        ) / step;
     });
     this.seek(time);
     return out;

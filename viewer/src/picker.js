@@ -15,8 +15,10 @@ export class Picker {
   async at(x, y) {
     const { renderer, scene, camera, model } = this.world;
     const { clientWidth: width, clientHeight: height } = renderer.domElement;
-    const background = scene.background, auto = renderer.shadowMap.needsUpdate;
-    const colour = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
+    const background = scene.background,
+      auto = renderer.shadowMap.needsUpdate;
+    const colour = renderer.getClearColor(new Color()),
+      alpha = renderer.getClearAlpha();
     camera.setViewOffset(width, height, x, y, 1, 1);
     camera.layers.set(1);
     scene.background = null;

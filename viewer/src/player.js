@@ -20,6 +20,12 @@ export class Player {
     this.onTime(this.time);
   }
 
+  /** To a time, and stay there. */
+  jump(time) {
+    this.isPlaying = false;
+    this.go(time);
+  }
+
   toggle() {
     this.isPlaying = !this.isPlaying && this.duration > 0;
     if (this.isPlaying && this.time >= this.duration) this.time = 0;
@@ -37,7 +43,8 @@ export class Player {
   /** To the step of the run so many further on. */
   step(count) {
     this.isPlaying = false;
-    let low = 0, high = this.times.length;
+    let low = 0,
+      high = this.times.length;
     while (low < high) {
       const middle = (low + high) >> 1;
       if (this.times[middle] <= this.time + 1e-9) low = middle + 1;

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every vertex knows the number of its part; where that part is and how it looks stands in two
 // textures of floats, which are all that changes from one frame to the next.
-import { DoubleSide, GLSL3, MeshDepthMaterial, MeshLambertMaterial, RGBADepthPacking, ShaderMaterial } from "three";
+import {
+  DoubleSide,
+  GLSL3,
+  MeshDepthMaterial,
+  MeshLambertMaterial,
+  RGBADepthPacking,
+  ShaderMaterial,
+} from "three";
 
 export const kTextureWidth = 2048;
 /** Texels per part of the textures: motion (see motion.js), look (see scene.js). */
-export const kMotionTexels = 4, kLookTexels = 3;
+export const kMotionTexels = 4,
+  kLookTexels = 3;
 
 const kPlacing = /* glsl */ `
 uniform highp sampler2D motionMap;
@@ -39,29 +47,40 @@ vec4 lightOf(vec3 load) {
 function patched(shader, uniforms) {
   Object.assign(shader.uniforms, uniforms);
   shader.vertexShader = shader.vertexShader
-    .replace("#include <common>", `#include <common>
+    .replace(
+      "#include <common>",
+      `#include <common>
 ${kPlacing}
 varying vec4 tint;
 varying vec3 along;
 flat varying vec4 load0, load1;
-flat varying float picked;`)
+flat varying float picked;`,
+    )
     .replace("#include <beginnormal_vertex>", "vec3 objectNormal = turned(motionTexel(1), normal);")
-    .replace("#include <begin_vertex>", `vec3 transformed = placed(position);
+    .replace(
+      "#include <begin_vertex>",
+      `vec3 transformed = placed(position);
 vec4 form = lookTexel(1);
 tint = lookTexel(0);
 along = vec3(position.z, form.x, form.y);
 load0 = motionTexel(2);
 load1 = motionTexel(3);
-picked = form.z;`);
+picked = form.z;`,
+    );
   shader.fragmentShader = shader.fragmentShader
-    .replace("#include <common>", `#include <common>
+    .replace(
+      "#include <common>",
+      `#include <common>
 uniform float showLoads;
 varying vec4 tint;
 varying vec3 along;
 flat varying vec4 load0, load1;
 flat varying float picked;
-${kLights}`)
-    .replace("#include <color_fragment>", `#include <color_fragment>
+${kLights}`,
+    )
+    .replace(
+      "#include <color_fragment>",
+      `#include <color_fragment>
 diffuseColor.rgb = mix(diffuseColor.rgb, tint.rgb, tint.a);
 if (showLoads > 0.5 && along.y > 0.0) {
   vec4 l0 = lightOf(load0.xyz), l1 = lightOf(load1.xyz);
@@ -70,12 +89,21 @@ if (showLoads > 0.5 && along.y > 0.0) {
   diffuseColor.rgb = mix(diffuseColor.rgb, l0.rgb, l0.a * near0);
   diffuseColor.rgb = mix(diffuseColor.rgb, l1.rgb, l1.a * near1);
 }
-diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0, 0.45, 0.02), 0.75 * picked);`)
-    .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\ntotalEmissiveRadiance += picked * vec3(0.22, 0.1, 0.0);");
+diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0, 0.45, 0.02), 0.75 * picked);`,
+    )
+    .replace(
+      "#include <emissivemap_fragment>",
+      "#include <emissivemap_fragment>\ntotalEmissiveRadiance += picked * vec3(0.22, 0.1, 0.0);",
+    );
 }
 
 export function surfaceMaterial(options, uniforms) {
-  const material = new MeshLambertMaterial({ ...options, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  const material = new MeshLambertMaterial({
+    ...options,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
   material.onBeforeCompile = (shader) => patched(shader, uniforms);
   return material;
 }
@@ -94,7 +122,9 @@ export function shadowMaterial(uniforms) {
 /** Writes the part's number + 1 as a colour. */
 export function pickMaterial(uniforms) {
   return new ShaderMaterial({
-    glslVersion: GLSL3, uniforms, side: DoubleSide,
+    glslVersion: GLSL3,
+    uniforms,
+    side: DoubleSide,
     vertexShader: `${kPlacing.replace("attribute", "in")}
 flat out int number;
 void main() {
@@ -112,7 +142,10 @@ void main() {
 /** Lines fade where a part is only a few pixels wide, and in what has not moved yet. */
 export function lineMaterial(uniforms) {
   return new ShaderMaterial({
-    glslVersion: GLSL3, uniforms, transparent: true, depthWrite: false,
+    glslVersion: GLSL3,
+    uniforms,
+    transparent: true,
+    depthWrite: false,
     vertexShader: `${kPlacing.replace("attribute", "in")}
 uniform float pixels;
 out float strength;
@@ -137,7 +170,11 @@ void main() {
 /** Lines between parts: whole while both ends see the bond at the same place. */
 export function graphMaterial(uniforms) {
   return new ShaderMaterial({
-    glslVersion: GLSL3, uniforms, transparent: true, depthTest: false, depthWrite: false,
+    glslVersion: GLSL3,
+    uniforms,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
     vertexShader: `${kPlacing.replace("attribute", "in")}
 in float other;      // the other part; below 0: the world
 in vec3 shared;      // the bond in this part's frame

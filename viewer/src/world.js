@@ -2,40 +2,62 @@
 // The picture: light, ground, camera, and the meshes of a model with the two textures that move
 // and paint them.
 import {
-  BufferAttribute, BufferGeometry, Color, DataTexture, DirectionalLight, DoubleSide, FloatType, Fog, FrontSide,
-  HemisphereLight, LineSegments, Mesh, NearestFilter, PCFShadowMap, PerspectiveCamera, PlaneGeometry, RGBAFormat,
-  Scene, ShaderMaterial, ShadowMaterial, Sphere, SRGBColorSpace, Texture, Vector3, WebGLRenderer, RepeatWrapping,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DataTexture,
+  DoubleSide,
+  FloatType,
+  FrontSide,
+  LineSegments,
+  Mesh,
+  NearestFilter,
+  PCFShadowMap,
+  PerspectiveCamera,
+  RGBAFormat,
+  Scene,
+  Sphere,
+  SRGBColorSpace,
+  Texture,
+  Vector3,
+  WebGLRenderer,
+  RepeatWrapping,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Graph } from "./graph.js";
 import { kStateSize } from "./motion.js";
 import { Picker } from "./picker.js";
 import { place } from "./pose.js";
-import { kLookTexels, kMotionTexels, kTextureWidth, lineMaterial, shadowMaterial, surfaceMaterial } from "./shaders.js";
-
-const kMostShadowTriangles = 3e6;
+import { Studio } from "./studio.js";
+import {
+  kLookTexels,
+  kMotionTexels,
+  kTextureWidth,
+  lineMaterial,
+  shadowMaterial,
+  surfaceMaterial,
+} from "./shaders.js";
 
 function floatTexture(texels) {
   const height = Math.max(1, Math.ceil(texels / kTextureWidth));
-  const texture = new DataTexture(new Float32Array(4 * kTextureWidth * height), kTextureWidth, height, RGBAFormat, FloatType);
+  const texture = new DataTexture(
+    new Float32Array(4 * kTextureWidth * height),
+    kTextureWidth,
+    height,
+    RGBAFormat,
+    FloatType,
+  );
   texture.minFilter = texture.magFilter = NearestFilter;
   return texture;
 }
 
-function gridMaterial() {
-  return new ShaderMaterial({
-    transparent: true, depthWrite: false,
-    uniforms: { step: { value: 1 }, centre: { value: new Vector3() }, extent: { value: 10 }, ink: { value: new Color() } },
-    vertexShader: `out vec3 at; void main() { vec4 p = modelMatrix * vec4(position, 1.0); at = p.xyz; gl_Position = projectionMatrix * viewMatrix * p; }`,
-    fragmentShader: `in vec3 at; uniform float step; uniform float extent; uniform vec3 centre; uniform vec3 ink;
-float lines(float every) { vec2 x = at.xz / every; vec2 w = fwidth(x); vec2 d = abs(fract(x - 0.5) - 0.5) / w; vec2 line = clamp(1.0 - d, 0.0, 1.0) * clamp(0.5 / max(w, 1e-6) - 0.6, 0.0, 1.0); return max(line.x, line.y); }
-void main() { float fade = 1.0 - smoothstep(0.25, 1.0, distance(at, centre) / extent); float a = max(0.13 * lines(step), 0.3 * lines(10.0 * step)) * fade; if (a < 0.003) discard; gl_FragColor = vec4(ink, a); }`,
-  });
-}
-
 export class World {
   constructor(canvas, onChange) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({
+      canvas,
+      antialias: true,
+      powerPreference: "high-performance",
+    });
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
@@ -46,10 +68,15 @@ export class World {
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("change", onChange);
     this.uniforms = {
-      motionMap: { value: null }, lookMap: { value: null }, showLoads: { value: 0 }, explode: { value: 0 }, pixels: { value: 800 },
-      ink: { value: new Color() }, time: { value: 0 },
+      motionMap: { value: null },
+      lookMap: { value: null },
+      showLoads: { value: 0 },
+      explode: { value: 0 },
+      pixels: { value: 800 },
+      ink: { value: new Color() },
+      time: { value: 0 },
     };
-    this.light();
+    this.studio = new Studio(this.scene);
     this.meshes = [];
     this.picker = new Picker(this);
     const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -57,26 +84,9 @@ export class World {
     this.dress(dark.matches);
   }
 
-  light() {
-    this.sky = new HemisphereLight(0xffffff, 0x8a8f9a, 1.75);
-    this.sun = new DirectionalLight(0xfff4e2, 2.7);
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.shade = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new ShadowMaterial({ opacity: 0.26, depthWrite: false }));
-    this.shade.receiveShadow = true;
-    this.grid = new Mesh(new PlaneGeometry(1, 1).rotateX(-Math.PI / 2), gridMaterial());
-    this.shade.renderOrder = -2, this.grid.renderOrder = -1;
-    this.scene.add(this.sky, this.sun, this.sun.target, this.shade, this.grid);
-  }
-
   dress(isDark) {
-    const back = new Color(isDark ? "#171b22" : "#e9edf2");
-    this.scene.background = back;
-    if (this.scene.fog) this.scene.fog.color = back;
-    this.grid.material.uniforms.ink.value.set(isDark ? "#c8d4e6" : "#41506a");
+    this.studio.dress(isDark);
     this.uniforms.ink.value.set(isDark ? "#05070a" : "#0d1420").convertLinearToSRGB();
-    this.sky.intensity = isDark ? 1.5 : 1.7;
-    this.shade.material.opacity = isDark ? 0.42 : 0.24;
   }
 
   /** Shows a model; what was there before is freed. */
@@ -91,26 +101,39 @@ export class World {
     for (const part of model.parts) this.writeForm(part);
     this.attributes(model.geometry);
     this.sphere = new Sphere(new Vector3(), Infinity);
-    model.geometry.lists.forEach((list, i) => list.length > 0 && this.addSurface(list, model.geometry.materials[i]));
+    model.geometry.lists.forEach(
+      (list, i) => list.length > 0 && this.addSurface(list, model.geometry.materials[i]),
+    );
     this.addLines(model.geometry.lines);
     this.graph = new Graph(model, this.uniforms);
     this.scene.add(this.graph.object);
-    this.hasShadows = model.geometry.triangles <= kMostShadowTriangles;
-    this.side = this.direction();
-    this.setGround();
+    this.fit();
     this.frame();
   }
 
   writeForm(part) {
     const at = part.index * 4 * kLookTexels;
-    const rest = { chunk: this.model.motion.movers.length > 0 && part.wall?.extras.kind !== "solid" ? 0.2 : 0.55 }[part.kind] ?? 0.6;
-    const form = [part.halfLength, Math.min(0.5, part.halfLength / 2) || 1, 0, rest, this.model.geometry.widths[part.index], ...this.model.explode.subarray(3 * part.index, 3 * part.index + 3)];
+    const rest =
+      {
+        chunk:
+          this.model.motion.movers.length > 0 && part.wall?.extras.kind !== "solid" ? 0.2 : 0.55,
+      }[part.kind] ?? 0.6;
+    const form = [
+      part.halfLength,
+      Math.min(0.5, part.halfLength / 2) || 1,
+      0,
+      rest,
+      this.model.geometry.widths[part.index],
+      ...this.model.explode.subarray(3 * part.index, 3 * part.index + 3),
+    ];
     this.look.set(form, at + 4);
   }
 
   attributes(geometry) {
     this.shared = {
-      position: new BufferAttribute(geometry.position, 3), normal: new BufferAttribute(geometry.normal, 4, true), part: new BufferAttribute(geometry.part, 1),
+      position: new BufferAttribute(geometry.position, 3),
+      normal: new BufferAttribute(geometry.normal, 4, true),
+      part: new BufferAttribute(geometry.part, 1),
     };
     if (geometry.colour) this.shared.color = new BufferAttribute(geometry.colour, 4, true);
     if (geometry.uv) this.shared.uv = new BufferAttribute(geometry.uv, 2);
@@ -118,14 +141,19 @@ export class World {
 
   geometryOf(list) {
     const geometry = new BufferGeometry();
-    for (const [name, attribute] of Object.entries(this.shared)) geometry.setAttribute(name, attribute);
+    for (const [name, attribute] of Object.entries(this.shared))
+      geometry.setAttribute(name, attribute);
     geometry.setIndex(new BufferAttribute(list, 1));
-    geometry.boundingSphere = this.sphere;  // or three.js would look at every vertex
+    geometry.boundingSphere = this.sphere; // or three.js would look at every vertex
     return geometry;
   }
 
   addSurface(list, source) {
-    const options = { color: new Color(...source.colour), vertexColors: Boolean(this.shared.color), map: this.textureOf(source) };
+    const options = {
+      color: new Color(...source.colour),
+      vertexColors: Boolean(this.shared.color),
+      map: this.textureOf(source),
+    };
     const mesh = new Mesh(this.geometryOf(list), surfaceMaterial(options, this.uniforms));
     mesh.customDepthMaterial = shadowMaterial(this.uniforms);
     mesh.castShadow = mesh.receiveShadow = true;
@@ -143,7 +171,15 @@ export class World {
     texture.wrapS = texture.wrapT = RepeatWrapping;
     texture.flipY = false;
     const blob = new Blob([this.model.gltf.bytes(source.image)], { type: source.mime });
-    createImageBitmap(blob).then((image) => ((texture.image = image), (texture.needsUpdate = true), this.controls.dispatchEvent({ type: "change" }))).catch(() => {});
+    createImageBitmap(blob)
+      .then(
+        (image) => (
+          (texture.image = image),
+          (texture.needsUpdate = true),
+          this.controls.dispatchEvent({ type: "change" })
+        ),
+      )
+      .catch(() => {});
     return texture;
   }
 
@@ -158,37 +194,25 @@ export class World {
     for (const object of [...this.meshes, this.lines, this.graph?.object]) {
       if (!object) continue;
       object.removeFromParent();
-      object.traverse((child) => (child.geometry?.dispose(), child.material?.map?.dispose(), child.material?.dispose()));
+      object.traverse(
+        (child) => (
+          child.geometry?.dispose(),
+          child.material?.map?.dispose(),
+          child.material?.dispose()
+        ),
+      );
     }
-    this.motionMap?.dispose(), this.lookMap?.dispose();
+    (this.motionMap?.dispose(), this.lookMap?.dispose());
     this.meshes = [];
     this.uniforms.explode.value = 0;
   }
 
-  setGround() {
+  fit() {
     const { box, ground } = this.model;
-    const size = Math.hypot(...box.high.map((h, k) => h - box.low[k]));
-    const middle = new Vector3(...box.high.map((h, k) => (h + box.low[k]) / 2));
-    this.size = size, this.middle = middle;
-    for (const plane of [this.shade, this.grid]) {
-      plane.position.set(middle.x, ground - 1e-3 * size, middle.z);
-      plane.scale.setScalar(12 * size);
-    }
-    const uniforms = this.grid.material.uniforms;
-    uniforms.step.value = 10 ** Math.round(Math.log10(size / 12));
-    uniforms.extent.value = 3.2 * size;
-    uniforms.centre.value.copy(this.grid.position);
-    const { sun } = this;
-    // From behind the camera's left shoulder.
-    const view = this.side;
-    const from = new Vector3(view.x - 0.5 * view.z, 0.95 * Math.hypot(view.x, view.z), view.z + 0.5 * view.x);
-    sun.position.copy(middle).addScaledVector(from.normalize(), 3 * size);
-    sun.target.position.copy(middle);
-    Object.assign(sun.shadow.camera, { left: -size, right: size, top: size, bottom: -size, near: size, far: 5.5 * size });
-    sun.shadow.camera.updateProjectionMatrix();
-    sun.shadow.normalBias = 0.0012 * size;
-    sun.shadow.bias = -0.0004;
-    this.scene.fog = null;
+    this.size = Math.hypot(...box.high.map((h, k) => h - box.low[k]));
+    this.middle = new Vector3(...box.high.map((h, k) => (h + box.low[k]) / 2));
+    this.side = this.direction();
+    this.studio.fit(this.size, this.middle, ground, this.side);
   }
 
   /** From which side at the start: a little from above, where the chunks of a hit wall go. */
@@ -197,7 +221,8 @@ export class World {
     const ball = parts.find((part) => part.kind === "projectile");
     const isBuilding = parts.some((part) => part.kind === "member");
     const { low, high } = this.model.box;
-    const sideOf = (k) => (ball ? Math.sign(motion.centre(ball)[k] - (low[k] + high[k]) / 2) || 1 : 1);
+    const sideOf = (k) =>
+      ball ? Math.sign(motion.centre(ball)[k] - (low[k] + high[k]) / 2) || 1 : 1;
     const side = sideOf(2);
     if (isBuilding) {
       const x = sideOf(0);
@@ -207,21 +232,26 @@ export class World {
   }
 
   frame() {
-    const { box } = this.model, { camera, middle } = this;
+    const { box } = this.model,
+      { camera, middle } = this;
     const direction = this.side.clone().normalize();
     camera.position.copy(middle).add(direction);
     camera.lookAt(middle);
     camera.updateMatrixWorld();
-    const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0), up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
-    const tall = Math.tan((camera.fov * Math.PI) / 360) * 0.86, wide = tall * camera.aspect;
+    const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0),
+      up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+    const tall = Math.tan((camera.fov * Math.PI) / 360) * 0.86,
+      wide = tall * camera.aspect;
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
-      const p = new Vector3(...[0, 1, 2].map((k) => (corner & (1 << k) ? box.high[k] : box.low[k]))).sub(middle);
+      const p = new Vector3(...[0, 1, 2].map((k) => (corner & (1 << k) ? box.high[k] : box.low[k])))
+        .sub(middle)
+        .multiplyScalar(1 + this.uniforms.explode.value);
       const need = Math.max(Math.abs(p.dot(right)) / wide, Math.abs(p.dot(up)) / tall);
       distance = Math.max(distance, need + p.dot(direction));
     }
     camera.position.copy(middle).addScaledVector(direction, distance);
-    camera.near = this.size / 500, camera.far = 60 * this.size;
+    ((camera.near = this.size / 500), (camera.far = 60 * this.size));
     camera.updateProjectionMatrix();
     this.controls.target.copy(middle);
     this.controls.maxDistance = 20 * this.size;
@@ -240,7 +270,10 @@ export class World {
   /** Colour of a part; amount 0 leaves its material. */
   paint(part, rgb, amount) {
     const at = part.index * 4 * kLookTexels;
-    this.look[at] = rgb[0], this.look[at + 1] = rgb[1], this.look[at + 2] = rgb[2], this.look[at + 3] = amount;
+    ((this.look[at] = rgb[0]),
+      (this.look[at + 1] = rgb[1]),
+      (this.look[at + 2] = rgb[2]),
+      (this.look[at + 3] = amount));
     this.lookMap.needsUpdate = true;
   }
 
@@ -269,17 +302,24 @@ export class World {
     }
     this.lines.visible = edges && !wireframe;
     this.graph.object.visible = graph;
-    this.sun.castShadow = shadows;
-    this.shade.visible = shadows;
+    this.studio.setShadows(shadows);
     this.refreshShadows();
   }
 
-  /** Where a joint is in the canvas, CSS pixels; null: behind the camera. */
+  /** Where a joint is in the canvas, CSS pixels; null: behind the camera, or its parts are gone. */
   onScreen(joint) {
-    const part = joint.a ?? joint.b;
     const { model, renderer, camera } = this;
-    const at = place(model.motion.state, part.index * kStateSize, ...joint.local.get(part), [0, 0, 0]);
-    for (let k = 0; k < 3; ++k) at[k] += this.uniforms.explode.value * model.explode[3 * part.index + k];
+    const isThere = (part) => part && model.motion.state[part.index * kStateSize + 3] > 1e-6;
+    const part = [joint.a, joint.b].find(isThere);
+    if (!part) return null;
+    const at = place(
+      model.motion.state,
+      part.index * kStateSize,
+      ...joint.local.get(part),
+      [0, 0, 0],
+    );
+    for (let k = 0; k < 3; ++k)
+      at[k] += this.uniforms.explode.value * model.explode[3 * part.index + k];
     const seen = new Vector3(...at).project(camera);
     if (seen.z > 1) return null;
     const { clientWidth, clientHeight } = renderer.domElement;
