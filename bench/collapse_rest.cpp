@@ -256,7 +256,7 @@ std::string name_of(const Method& method) {
     name += method.engine == bullet ? "" : method.engine == cold ? ", cold" : ", warm";
   if (method.solver != JointSolver::sequential_impulse)
     name += std::string(", ") + name_of(method.solver);
-  if (method.compliance > 0) name += " with compliance 1e-9";
+  if (method.compliance > 0) name += ", c = 1e-9";
   if (method.engine == warm && !method.primed) name += " from nothing";
   return name;
 }

@@ -141,6 +141,7 @@ Point repair_point(const std::vector<TriMesh>& solids, double share) {
 Job repair_job() {
   Job job{
       "repair",
+      "front repair",
       "Hausdorff distance by the diagonal of the bounding box, the largest of a sphere, a torus "
       "and a turned box, of surfaces made anew by a level set; corners set it",
       "of the level set and its surface, one thread, the slowest of the three solids",

@@ -78,9 +78,11 @@ void plot_standing() {
         .error_axis = axis,
         .time_axis = "processor ms per simulated second",
         .least_error = 1e-4,
-        .none = "the ref.",
+        .none = "reference",
         .omissions =
-            "Bullet's featherstone joints and soft bodies; PhysX and Jolt, which Debian does not "
+            "Bullet's featherstone joints and soft bodies, and its direct solvers without the "
+            "compliance c, which fail ([table](#direct-solvers)); PhysX and Jolt, which Debian "
+            "does not "
             "package (quoted in [the plot of sag](#sag-forces-and-cost-at-rest)). The reference is "
             "the frame's finite-element solution, so that hybrid, which uses it, has no error "
             "here: "
