@@ -2,7 +2,7 @@
 // The tables of frame buildings in docs/accuracy.md and docs/performance.md: sag, forces and cost
 // against Bullet itself, closed forms, a hit, and how far one collapse can be trusted.
 // Usage: bench_collapse_accuracy [rest|direct|forms|hit|trust] [long]
-// long: 1000 iterations at rest too, 20 starts instead of 8
+// long: more iterations at rest too, 20 starts instead of 8
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
