@@ -150,7 +150,8 @@ std::vector<Method> methods_at_rest(bool is_long) {
   add(bullet, 1.0 / 60, {10, 50, 200});
   if (is_long) add(bullet, 1.0 / 60, {1000});
   add(bullet, 1.0 / 240, {50});
-  add(bullet, 1.0 / 60, {50, 200}, JointSolver::nncg);
+  add(bullet, 1.0 / 60, {50}, JointSolver::nncg);
+  if (is_long) add(bullet, 1.0 / 60, {200}, JointSolver::nncg);
   add(cold, 1.0 / 60, {10, 50, 200});
   if (is_long) add(cold, 1.0 / 60, {1000});
   add(cold, 1.0 / 60, {50}, JointSolver::nncg);
@@ -193,7 +194,7 @@ void print_overload(const char* building, const Frame& frame, const Row& row) {
 void overload_table(const Frame& tall, const std::vector<Row>& rows) {
   const Block block("collapse_accuracy overload");
   std::printf(
-      "| building | method | step | iterations | joints over their strength after 10 s | at any "
+      "| building | method | step | iterations | joints over their strength at the end | at any "
       "time from the start | largest utilisation | largest moment of a beam's end, kN m "
       "|\n|---|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) print_overload("3 × 3 × 12", tall, row);
@@ -204,7 +205,7 @@ void overload_table(const Frame& tall, const std::vector<Row>& rows) {
                                Method{.engine = cold, .iterations = 200, .step = 1.0 / 60},
                                Method{.engine = warm, .iterations = 50, .step = 1.0 / 60},
                                Method{.engine = warm, .iterations = 30, .step = 1.0 / 240}})
-    print_overload("4 × 5 × 6", frame, {method, rest(frame, method, 10)});
+    print_overload("4 × 5 × 6", frame, {method, rest(frame, method, 5)});
 }
 
 /// Against the sag of the elastic frame, which rigid joints cannot have.

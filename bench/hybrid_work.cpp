@@ -14,7 +14,7 @@
 namespace sunder {
 namespace {
 
-constexpr double kBudget = 4;  // s of processor time, for solvers that are too slow
+constexpr double kBudget = 2;  // s of processor time, for solvers that are too slow
 
 struct Run {
   Method method;
