@@ -214,7 +214,7 @@ void alone(const std::string& name, const std::function<void()>& work) {
 
 int main(int argc, char** argv) {
   using namespace sunder;
-  const double after = argc > 1 ? std::atof(argv[1]) : 10.5;
+  const double after = argc > 1 ? std::atof(argv[1]) : 2.1;
   const char* header =
       "| | steps | median ms | p95 ms | longest ms | bodies |\n|---|---|---|---|---|---|\n";
   if (after > 0) {

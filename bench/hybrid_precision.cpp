@@ -149,8 +149,10 @@ void measure_precision() {
   for (const Size& size : {Size{3, 3, 12}, Size{4, 5, 6}}) {
     const Frame frame = building_of(size);
     const Truth truth = truth_of(frame);
-    for (const int iterations : {10, 50, 200, 1000})
+    for (const int iterations : {10, 50, 200, 1000}) {
+      if (iterations == 1000 && size.x > 3) continue;  // as wrong, at five times the cost
       print_rigid(size, frame, truth, {.engine = bullet, .iterations = iterations, .step = kFrame});
+    }
     print_rigid(size, frame, truth, {.engine = cold, .iterations = 200, .step = kFrame});
     print_rigid(size, frame, truth, {.engine = warm, .iterations = 50, .step = kFrame});
     print_rigid(size, frame, truth, {.engine = warm, .iterations = 30, .step = 1.0 / 240});

@@ -72,7 +72,7 @@ void compare_steps() {
     for (const int iterations : {10, 50, 200}) {
       const auto ms =
           step_jointed_wall(scene.walls[0].asset, scene.walls[0].material.tensile_strength,
-                            scene.projectiles[0], kStep, iterations, 240, 5);
+                            scene.projectiles[0], kStep, iterations, 240, 3);
       print_steps(("Bullet, all active, " + std::to_string(iterations) + " iterations").c_str(),
                   chunks, ms);
     }

@@ -149,10 +149,10 @@ std::string axes(const WorkPlot& plot, const Layout& layout) {
   std::string svg = grid(layout.x, true) + grid(layout.y, false);
   if (layout.has_none)
     svg += line(layout.x.from, kTop, layout.x.from, kBottom, kEdge) +
-           words(kLeft + kStrip / 2, kBottom - 8, plot.none, "middle", kSmall);
+           words(kLeft + kStrip / 2, kTop - 7, plot.none, "middle", kSmall);
   if (layout.has_failed)
     svg += line(layout.x.to, kTop, layout.x.to, kBottom, kEdge) +
-           words(kRight - kStrip / 2, kBottom - 8, "failed", "middle", kSmall);
+           words(kRight - kStrip / 2, kTop - 7, "failed", "middle", kSmall);
   svg += text("<rect x='%.0f' y='%.0f' width='%.0f' height='%.0f' fill='none' stroke='#888'/>\n",
               kLeft, kTop, kRight - kLeft, kBottom - kTop);
   svg += words((kLeft + kRight) / 2, kBottom + 44, plot.error_axis, "middle");
@@ -226,7 +226,7 @@ std::string key_of(const WorkPlot& plot, const Layout& layout) {
     svg +=
         mark_at(kKey, y - 4, style_of(i), false) + words(kKey + 14, y, layout.methods[i], "start");
   y += 8;
-  std::vector<std::string> notes{"bars: least to most time"};
+  std::vector<std::string> notes{"bars: spread of the time"};
   if (std::ranges::any_of(plot.points, &WorkPoint::quoted)) notes.push_back("hollow: quoted");
   for (const std::string& note : notes) {
     svg += words(kKey - 6, y, note, "start", " font-size='11' fill='#555'");
