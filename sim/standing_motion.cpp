@@ -23,6 +23,7 @@ double product_of(const std::vector<double>& a, const std::vector<double>& b) {
 
 void StandingFrame::wake() {
   quiet_for_ = 0;
+  take_in_panels();
   const bool rang = std::exchange(rings_, true);
   if (rang || scene_.simulation.quasi_static) return;
   if (!dynamic_.frame) make_dynamic();
