@@ -69,6 +69,7 @@ class StandingFrame {
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
+  bool bends() const { return !hinges_.empty(); }
   bool can_bend(std::uint32_t joint) const { return in_use().can_bend(joint); }
   void set_hinges(const std::vector<Hinge>& hinges);
 
