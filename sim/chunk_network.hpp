@@ -46,9 +46,9 @@ struct BrokenBond {
 
 /// A fractured wall or floor slab as a network of rigid chunks joined by their elastic faces
 /// (BondSpring), held through its anchors by what it hangs in (PanelHold): an element of a frame
-/// with 24 freedoms, or the 12 translations among them, condensed exactly. Chunks that no path of bonds joins to an
-/// anchor are *loose*: they bear nothing and load nothing until the caller takes them away. Small
-/// displacements. The same calls give the same bits. Not thread-safe.
+/// with 24 freedoms, or the 12 translations among them, condensed exactly. Chunks that no path of
+/// bonds joins to an anchor are *loose*: they bear nothing and load nothing until the caller takes
+/// them away. Small displacements. The same calls give the same bits. Not thread-safe.
 class ChunkNetwork {
  public:
   /// Weight by the material's density. Bonds shorter than 1e-5 of the size of a chunk bear nothing.

@@ -113,10 +113,11 @@ class CollapseRun {
   bool posts_known_ = false;  ///< nor a post
   bool breaks_ = false;       ///< settled: joints can break
   bool disturbed_ = false;    ///< something has happened to the building
-  std::uint64_t unsettled_steps_ = 0;  ///< panels and joints still broke each other after all rounds
-  double added_load_ = 0;     ///< N/m²
-  double baseline_ = 0;       ///< potential energy of the projectiles where they started, J
-  double start_ = 0;          ///< energy of the standing frame at time 0, J
+  std::uint64_t unsettled_steps_ =
+      0;                   ///< panels and joints still broke each other after all rounds
+  double added_load_ = 0;  ///< N/m²
+  double baseline_ = 0;    ///< potential energy of the projectiles where they started, J
+  double start_ = 0;       ///< energy of the standing frame at time 0, J
   Vec3 impulse_;
   double largest_momentum_ = 0, largest_momentum_error_ = 0;
 };

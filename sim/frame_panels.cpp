@@ -75,8 +75,8 @@ void FrameSolver::Impl::set_panels(std::span<const PanelElement> wanted) {
     if (!std::ranges::is_permutation(corners_of(frame, part), element.nodes))
       throw Error(ErrorCode::input, frame.part_name(part) +
                                         ": the nodes of its element are not those of its corners");
-    auto panel = std::ranges::lower_bound(panels, part, {},
-                                          [](const Panel& p) { return p.element.part; });
+    auto panel =
+        std::ranges::lower_bound(panels, part, {}, [](const Panel& p) { return p.element.part; });
     if (panel == panels.end() || panel->element.part != part) {
       panel = panels.insert(panel, Panel{.element = element, .blocks = {}});
       panel->blocks.fill({kNone, kNone, {}});
@@ -158,8 +158,7 @@ Twelve FrameSolver::Impl::motion_of(const Panel& panel, std::span<const double> 
 void FrameSolver::Impl::add_at_corners(const Panel& panel, const Twelve& force,
                                        std::span<double> result) {
   for (std::size_t i = 0; i < 12; ++i)
-    if (panel.node[i / 3] < kFixed)
-      result[6 * std::size_t{panel.node[i / 3]} + i % 3] += force[i];
+    if (panel.node[i / 3] < kFixed) result[6 * std::size_t{panel.node[i / 3]} + i % 3] += force[i];
 }
 
 /// result += the panels' stiffness × motion.

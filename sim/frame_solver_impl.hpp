@@ -72,8 +72,8 @@ struct FrameSolver::Impl {
     std::array<std::uint32_t, 4> member{kNone, kNone, kNone, kNone};  ///< along each edge
     std::array<std::uint32_t, 4> joint{kNone, kNone, kNone, kNone};   ///< of the panel with it
     std::array<std::uint32_t, 4> node{kNone, kNone, kNone, kNone};    ///< solver nodes; kFixed
-    bool is_new = false;   ///< the element is not in the factor yet
-    bool is_lost = false;  ///< takes no part any more
+    bool is_new = false;                ///< the element is not in the factor yet
+    bool is_lost = false;               ///< takes no part any more
     std::array<BlockChange, 6> blocks;  ///< in the factor
   };
   /// What holds together but not to the ground.
@@ -152,8 +152,7 @@ struct FrameSolver::Impl {
   void place_corners(Panel& panel) const;
   void renew_panels();
   Twelve motion_of(const Panel& panel, std::span<const double> motion, bool from_rest) const;
-  static void add_at_corners(const Panel& panel, const Twelve& force,
-                             std::span<double> result);
+  static void add_at_corners(const Panel& panel, const Twelve& force, std::span<double> result);
   void add_panels(std::span<const double> motion, std::span<double> result) const;
   void add_panel_loads(std::span<double> result) const;
   double strain_of_panels() const;

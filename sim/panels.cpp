@@ -178,8 +178,8 @@ void Panels::start() {
     Shape& shape = shape_of(w);
     panel.used = shape.at_rest;
     if (!shape.network || panel.part < first) continue;
-    elements.push_back({panel.part, panel.nodes,
-                        stiffness_of(*shape.network, standing_of(panel).rotation), {}});
+    elements.push_back(
+        {panel.part, panel.nodes, stiffness_of(*shape.network, standing_of(panel).rotation), {}});
   }
   host_.motion.set_panels(std::move(elements));
 }
@@ -471,14 +471,15 @@ bool Panels::crack() {
 void Panels::settle(std::uint32_t w) {
   Panel& panel = panels_[w];
   const PanelFreedoms corners = corners_of(panel);
-  if (!panel.stress->is_stale(corners, impact_.simulation.max_error) ||
-      (panel.stress->is_whole() &&
-       panel.stress->utilisation() + added_use(panel, corners, panel.stress->settled()) <= 1)) {
+  // What is whole is judged by the bound alone, as what is not meshed yet.
+  PanelStress& stress = *panel.stress;
+  if (stress.is_whole() ? stress.utilisation() + added_use(panel, corners, stress.settled()) <= 1
+                        : !stress.is_stale(corners, impact_.simulation.max_error)) {
     ++solves_skipped_;
     return;
   }
   ++solves_;
-  const std::vector<BrokenBond> broken = panel.stress->settle(corners);
+  const std::vector<BrokenBond> broken = stress.settle(corners);
   if (!broken.empty() && !panel.stands) stand_up(w);
   if (!broken.empty() && panel.stress) break_bonds(w, broken);
 }

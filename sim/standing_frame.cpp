@@ -253,8 +253,8 @@ void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
 
 void StandingFrame::change_panels(std::span<const PanelStiffness> changed) {
   for (const PanelStiffness& each : changed) {
-    const auto panel = std::ranges::lower_bound(
-        panels_, each.part, {}, [](const Panel& p) { return p.element.part; });
+    const auto panel = std::ranges::lower_bound(panels_, each.part, {},
+                                                [](const Panel& p) { return p.element.part; });
     panel->element.stiffness = each.stiffness;
     ++panel->set;
   }

@@ -105,8 +105,7 @@ std::vector<double> dense_solution(const Frame& frame, const Chunks& panel) {
   left.bonds.clear();
   for (std::uint32_t b = 0; b < panel.asset.bonds.size(); ++b)
     if (panel.network->is_intact(b)) left.bonds.push_back(panel.asset.bonds[b]);
-  const Dense of_panel =
-      DensePanel(left, panel_concrete(), panel.hold, panel.network->sites()).k;
+  const Dense of_panel = DensePanel(left, panel_concrete(), panel.hold, panel.network->sites()).k;
   const std::size_t chunks = of_panel.size - 24, count = bare.freedoms();
   Dense k(chunks + count);
   Column f(k.size);
@@ -303,11 +302,10 @@ TEST(FramePanels, UpdatesAreAsIfBuiltAnewAndWithoutStiffnessAsBefore) {
 
 TEST(FramePanels, GoForGoodWithTheirJointsAndMembers) {
   const Frame frame = breakable(2, 2, 2, 0.1);
-  for (const auto& [part, name] :
-       {std::pair{"slab_0_0_1", "slab_0_0_1@beam_x_0_0_1"},
-        {"slab_0_0_1", "beam_x_0_0_1@post_0_0_1"},
-        {"wall_x_0_1_0", "wall_x_0_1_0@post_0_1_0"},
-        {"wall_x_0_1_1", "post_1_1_1@post_1_1_0"}}) {
+  for (const auto& [part, name] : {std::pair{"slab_0_0_1", "slab_0_0_1@beam_x_0_0_1"},
+                                   {"slab_0_0_1", "beam_x_0_0_1@post_0_0_1"},
+                                   {"wall_x_0_1_0", "wall_x_0_1_0@post_0_1_0"},
+                                   {"wall_x_0_1_1", "post_1_1_1@post_1_1_0"}}) {
     std::uint32_t joint = kNoPart;
     for (std::uint32_t j = 0; j < frame.joints.size(); ++j)
       if (frame.joints[j].name == name) joint = j;

@@ -233,8 +233,7 @@ CollapseScene one_wall_scene() {
 
 /// The last one's debris meets the walls behind.
 TEST(Panels, SkippingChangesNoBreak) {
-  for (const CollapseScene& scene :
-       {one_wall_scene(), shot_through_slab(), shot_through_wall()}) {
+  for (const CollapseScene& scene : {one_wall_scene(), shot_through_slab(), shot_through_wall()}) {
     const CollapseResult some = simulate_collapse(scene);
     const CollapseResult all = simulate_collapse(scene, {.skip = false});
     EXPECT_EQ(joints_broken(scene, some), joints_broken(scene, all));
