@@ -58,32 +58,44 @@ BlockChange block_of(const Matrix12& matrix, const std::array<std::uint32_t, 4>&
 
 /// Pairs of nodes that elements couple.
 void FrameSolver::Impl::add_panel_edges(FrameLinks::Edges& edges) const {
-  for (const std::uint32_t part : params.panels) {
-    const auto& nodes = corners_of(frame, part);
+  for (const PanelElement& panel : params.panels) {
+    const auto& nodes = panel.nodes;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t k = i + 1; k < 4; ++k) links.add_edges(nodes[i], nodes[k], edges);
   }
 }
 
+void FrameSolver::Impl::make_panels() {
+  for (const PanelElement& element : params.panels) {
+    if (element.part < frame.slab_part(0) || element.part >= frame.part_count())
+      throw Error(ErrorCode::input, "part " + std::to_string(element.part) +
+                                        " cannot be elastic between four nodes, slabs and walls "
+                                        "can");
+    panels.push_back({.element = element, .blocks = {}});
+    panels.back().blocks.fill({kNone, kNone, {}});
+    take_element(panels.back(), element);
+  }
+  std::ranges::sort(panels, {}, [](const Panel& p) { return p.element.part; });
+}
+
+void FrameSolver::Impl::take_element(Panel& panel, const PanelElement& element) const {
+  if (!std::ranges::is_permutation(corners_of(frame, element.part), element.nodes))
+    throw Error(ErrorCode::input, frame.part_name(element.part) +
+                                      ": the nodes of its element are not those of its corners");
+  panel.element = element;
+  panel.is_new = true;
+  place_edges(panel);
+}
+
 void FrameSolver::Impl::set_panels(std::span<const PanelElement> wanted) {
   for (const PanelElement& element : wanted) {
-    const std::uint32_t part = element.part;
-    if (std::ranges::find(params.panels, part) == params.panels.end())
-      throw Error(ErrorCode::input,
-                  (part < frame.part_count() ? frame.part_name(part) : std::to_string(part)) +
-                      ": cannot become elastic, only a part that the frame solver was told of can");
-    if (!std::ranges::is_permutation(corners_of(frame, part), element.nodes))
-      throw Error(ErrorCode::input, frame.part_name(part) +
-                                        ": the nodes of its element are not those of its corners");
-    auto panel =
-        std::ranges::lower_bound(panels, part, {}, [](const Panel& p) { return p.element.part; });
-    if (panel == panels.end() || panel->element.part != part) {
-      panel = panels.insert(panel, Panel{.element = element, .blocks = {}});
-      panel->blocks.fill({kNone, kNone, {}});
-    }
-    panel->element = element;
-    panel->is_new = true;
-    place_edges(*panel);
+    const auto panel = std::ranges::lower_bound(panels, element.part, {},
+                                                [](const Panel& p) { return p.element.part; });
+    if (panel == panels.end() || panel->element.part != element.part)
+      throw Error(ErrorCode::input, "part " + std::to_string(element.part) +
+                                        " is none of the elements that the frame solver was made "
+                                        "with");
+    take_element(*panel, element);
   }
   if (!wanted.empty()) update({}, {});
 }

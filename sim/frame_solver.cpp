@@ -66,6 +66,7 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
   });
   make_members();
   make_diaphragms();
+  make_panels();
   to_restrain.assign(links.node_count(), 1);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges = links.edges();
   std::vector<std::uint32_t> all_members(members.size()), all_plates(plates.size());

@@ -24,8 +24,9 @@ struct FrameSolverParams {
   /// Stiffness × this + mass × that is what is factored: {1, 0} for statics; Newmark asks for
   /// others.
   double stiffness = 1, mass = 0;
-  /// Slabs and walls that the factor has room for as elements, see set_panels().
-  std::vector<std::uint32_t> panels = {};
+  /// Slabs and walls that are elements of the stiffness, see set_panels(). Throws Error{input} for
+  /// other parts, and nodes that are not their corners.
+  std::vector<PanelElement> panels = {};
   /// A piece of a building that flies, as a frame of its own: mechanisms in it are held and told of
   /// as in pieces that broke off, and walls without a lower beam hang on what is left of them.
   bool free = false;
@@ -86,9 +87,9 @@ class FrameSolver {
   void remove_parts(std::span<const std::uint32_t> parts);
   /// So much is left of a slab or wall panel, kg.
   void set_plate_mass(std::uint32_t part, double mass);
-  /// Slabs and walls become elements of the stiffness, or other ones: see PanelElement. What they
-  /// put on a node passes no joint there. Throws Error{input} for parts that are none of the
-  /// parameters' `panels`, and nodes that are not their corners.
+  /// Slabs and walls become other elements of the stiffness. What they put on a node passes no
+  /// joint there. Throws Error{input} for parts that are none of the parameters' `panels`, and
+  /// nodes that are not their corners.
   void set_panels(std::span<const PanelElement> elements);
   /// Of the nodes of an element from where it is at rest, m; none: it takes no part (any more).
   std::optional<Twelve> panel_motion(std::uint32_t part) const;

@@ -147,6 +147,8 @@ struct FrameSolver::Impl {
 
   // frame_panels.cpp: slabs and walls that are elastic.
   void add_panel_edges(FrameLinks::Edges& edges) const;
+  void make_panels();
+  void take_element(Panel& panel, const PanelElement& element) const;
   void set_panels(std::span<const PanelElement> wanted);
   void place_edges(Panel& panel) const;
   void place_corners(Panel& panel) const;

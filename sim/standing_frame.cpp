@@ -14,7 +14,7 @@ FrameSolverParams StandingFrame::static_params() const {
   params.p_delta = scene_.simulation.p_delta;
   params.slabs = scene_.simulation.diaphragms ? "diaphragm" : "load";
   if (has_panels_)
-    for (const Panel& panel : panels_) params.panels.push_back(panel.element.part);
+    for (const Panel& panel : panels_) params.panels.push_back(panel.element);
   return params;
 }
 
@@ -49,12 +49,8 @@ void StandingFrame::begin_dynamic() {
   ringing.progress = [&stops = stops_](double) {
     if (stops) throw Error(ErrorCode::input, "the factor is not needed any more");
   };
-  std::vector<PanelElement> elements;
-  for (const Panel& panel : panels_) elements.push_back(panel.element);
-  ahead_ = std::async(std::launch::async, [this, ringing, elements, &like = *static_.frame] {
-    auto solver = std::make_unique<FrameSolver>(frame_, ringing, like);
-    solver->set_panels(elements);
-    return solver;
+  ahead_ = std::async(std::launch::async, [this, ringing, &like = *static_.frame] {
+    return std::make_unique<FrameSolver>(frame_, ringing, like);
   });
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "meshing/error.hpp"
@@ -23,16 +22,17 @@ Frame breakable(std::size_t x, std::size_t z, std::size_t storeys, double walls 
   return frame;
 }
 
-FrameSolverParams with_panels(const Frame& frame, double mass = 0) {
-  FrameSolverParams params{.mass = mass};
-  params.panels.resize(frame.slabs.size() + frame.walls.size());
-  std::iota(params.panels.begin(), params.panels.end(), frame.slab_part(0));
-  return params;
-}
-
 const std::array<std::uint32_t, 4>& nodes_of(const Frame& frame, std::uint32_t part) {
   return part < frame.wall_part(0) ? frame.slabs[part - frame.slab_part(0)].nodes
                                    : frame.walls[part - frame.wall_part(0)].nodes;
+}
+
+/// Room for all of them, without stiffness yet.
+FrameSolverParams with_panels(const Frame& frame, double mass = 0) {
+  FrameSolverParams params{.mass = mass};
+  for (std::uint32_t part = frame.slab_part(0); part < frame.part_count(); ++part)
+    params.panels.push_back({part, nodes_of(frame, part), {}, {}});
+  return params;
 }
 
 /// A slab or wall of a frame as chunks from node to node.
@@ -330,7 +330,7 @@ TEST(FramePanels, TellHowTheirCornersMovedFromWhereTheyAreAtRest) {
   const Frame frame = breakable(2, 2, 1, 0.1);
   FrameSolver solver(frame, with_panels(frame));
   Chunks wall(frame, frame.wall_part(0), 2);
-  EXPECT_FALSE(solver.panel_motion(wall.part));
+  EXPECT_FALSE(FrameSolver(frame).panel_motion(wall.part));
   set(solver, wall.element());
   solver.solve(pushed(frame));
   const Twelve moved = solver.panel_motion(wall.part).value();
@@ -356,6 +356,12 @@ TEST(FramePanels, AreRefusedWhereThereIsNone) {
   }
   FrameSolver bare(frame);
   EXPECT_THROW(set(bare, slab.element()), Error);
+  for (const std::uint32_t part : {0u, frame.part_count()}) {
+    FrameSolverParams params;
+    params.panels = {slab.element()};
+    params.panels[0].part = part;
+    EXPECT_THROW(FrameSolver(frame, params), Error);
+  }
 }
 
 // Corners of a turned panel are the same.
