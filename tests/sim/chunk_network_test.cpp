@@ -737,6 +737,32 @@ TEST(Cascade, ASlabOnHingesBreaksAlongItsDiagonals) {
 }
 
 // By 90° turns four bonds are equal: the one of lowest id goes first, and twice the same.
+// As a wall of a frame that sways. Tension is along the diagonal that gets longer: bonds whose
+// normals lie along it break first (of all bonds the mean of 2 n_x n_y is 0); then it tears off its
+// edges.
+TEST(Cascade, ARackedWallCracksAcrossTheDiagonalThatGetsLonger) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    for (const double way : {1.0, -1.0}) {
+      const PanelKind kind{.size = {6, 3.5}, .cell = 0.5, .jitter = 0.9};
+      const WallAsset asset = panel_asset(kind, seed);
+      const PanelHold hold = straight_hold(kind.size);
+      ChunkNetwork network(asset, panel_concrete(), hold);
+      PanelFreedoms racked{};
+      for (std::size_t c = 2; c < 4; ++c) racked[6 * c] = way;
+      const double first = 1 / network.highest(racked);
+      for (double& value : racked) value *= 1.05 * first;
+      double sum = 0, length = 0;
+      for (const BrokenBond& broken : network.cascade(racked, 12)) {
+        const Bond& bond = asset.bonds[broken.bond];
+        if (bond.b == kWorld) continue;
+        sum += bond.area * 2 * bond.normal.x * bond.normal.y;
+        length += bond.area;
+      }
+      EXPECT_GT(length, 0) << seed;
+      EXPECT_GT(way * sum, 0.4 * length) << seed << ", way " << way;
+    }
+}
+
 TEST(Cascade, EqualBondsBreakByTheirIds) {
   const PanelKind kind{.size = {2, 2}, .cell = 0.5, .jitter = 0};
   const WallAsset asset = panel_asset(kind, 1);
