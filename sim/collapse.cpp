@@ -90,6 +90,7 @@ void CollapseRun::add_panels() {
                    .solids = solids_,
                    .break_off = [this](std::uint32_t part) { break_off(part); },
                    .is_intact = [this](std::uint32_t j) { return joints_[j].intact; },
+                   .broken_joints = [this] { return result_.broken_joints.size(); },
                    .track_of =
                        [this](std::uint32_t part) {
                          std::uint32_t& track = parts_[part].track;

@@ -83,6 +83,7 @@ void FrameSolver::Impl::take_element(Panel& panel, const PanelElement& element) 
     throw Error(ErrorCode::input, frame.part_name(element.part) +
                                       ": the nodes of its element are not those of its corners");
   panel.element = element;
+  panel.pull = times(element.stiffness, element.at_rest);
   panel.is_new = true;
   place_edges(panel);
 }
@@ -184,8 +185,7 @@ void FrameSolver::Impl::add_panels(std::span<const double> motion, std::span<dou
 /// result += what they put on nodes that stand where the frame was drawn.
 void FrameSolver::Impl::add_panel_loads(std::span<double> result) const {
   for (const Panel& panel : panels)
-    if (!panel.is_lost)
-      add_at_corners(panel, times(panel.element.stiffness, panel.element.at_rest), result);
+    if (!panel.is_lost) add_at_corners(panel, panel.pull, result);
 }
 
 /// What panels store, less what their stiffness would if they were at rest where it was drawn.

@@ -69,6 +69,7 @@ struct FrameSolver::Impl {
   /// A slab or wall as an element of the stiffness.
   struct Panel {
     PanelElement element;
+    Twelve pull{};  ///< on nodes that stand where the frame was drawn, N
     std::array<std::uint32_t, 4> member{kNone, kNone, kNone, kNone};  ///< along each edge
     std::array<std::uint32_t, 4> joint{kNone, kNone, kNone, kNone};   ///< of the panel with it
     std::array<std::uint32_t, 4> node{kNone, kNone, kNone, kNone};    ///< solver nodes; kFixed

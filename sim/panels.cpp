@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "fracture/recover.hpp"
 #include "meshing/error.hpp"
@@ -139,6 +140,7 @@ void Panels::place_corners(Panel& panel) const {
   const auto& nodes = is_slab ? frame.slabs[panel.part - frame.slab_part(0)].nodes
                               : frame.walls[panel.part - frame.wall_part(0)].nodes;
   const Pose to_wall = inverse(standing_of(panel));
+  panel.to_wall = to_wall.rotation;
   const Box box = bounding_box(host_.solids[panel.part].outline.outline);
   const Vec2 middle = 0.5 * (box.high - box.low);
   for (const std::uint32_t node : nodes) {
@@ -154,11 +156,10 @@ void Panels::place_corners(Panel& panel) const {
 
 /// From where they were at time 0.
 PanelFreedoms Panels::corners_of(const Panel& panel) const {
-  const Quaternion back = conjugate(standing_of(panel).rotation);
   const Twelve moved = host_.motion.panel_motion(panel.part).value_or(Twelve{});
   PanelFreedoms result{};
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 u = rotate(back, {moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]});
+    const Vec3 u = rotate(panel.to_wall, {moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]});
     std::ranges::copy(std::array{u.x, u.y, u.z}, result.begin() + 6 * i);
   }
   return result;
@@ -497,9 +498,12 @@ void Panels::after_step(double now, double dt) {
 }
 
 void Panels::follow_frame() {
+  const std::size_t broken = host_.broken_joints();
+  const bool any_broken = std::exchange(joints_followed_, broken) != broken;
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
-    if (walls_.is_waiting(w) && has_lost_joint(panel) && host_.motion.stands(panel.part))
+    if (any_broken && walls_.is_waiting(w) && has_lost_joint(panel) &&
+        host_.motion.stands(panel.part))
       stand_up(w);  // its chunks there hang on nothing
     if (!panel.stands) continue;
     if (host_.motion.stands(panel.part)) {

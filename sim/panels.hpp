@@ -31,6 +31,7 @@ class Panels {
     /// Breaks what joints a part still has, so that it is a body of its own.
     std::function<void(std::uint32_t part)> break_off;
     std::function<bool(std::uint32_t joint)> is_intact;
+    std::function<std::size_t()> broken_joints;  ///< how many so far
     /// The track of a part that leaves the frame.
     std::function<std::uint32_t(std::uint32_t part)> track_of;
   };
@@ -79,6 +80,7 @@ class Panels {
     std::uint32_t present = 0;             ///< chunks that stood when the frame was last told
     std::array<std::uint32_t, 4> nodes{};  ///< of the frame, in the order of PanelCorners
     PanelHold hold{};
+    Quaternion to_wall{};                    ///< from the world
     std::optional<ImpactWall> made{};        ///< its chunks, once they were needed
     std::uint32_t shape = kNoPart;           ///< of shapes_; kNoPart: not yet known
     PanelFreedoms seen{};                    ///< corners for which `used` is known
@@ -139,6 +141,7 @@ class Panels {
   std::vector<Shape> shapes_;
   std::uint64_t solves_ = 0, solves_skipped_ = 0;
   std::vector<PanelStiffness> softer_;        ///< that the frame does not know yet
+  std::size_t joints_followed_ = 0;           ///< broken ones that follow_frame() knows of
   double shift_ = 0;                          ///< of the baseline, J
   bool any_awake_ = false;                    ///< something was near a panel
   std::vector<std::uint32_t> panel_of_part_;  ///< kNoPart: it does not break

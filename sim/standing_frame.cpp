@@ -19,12 +19,18 @@ FrameSolverParams StandingFrame::static_params() const {
 }
 
 /// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
+StandingFrame::Factored StandingFrame::factored_in_time() const {
+  const double dt = scene_.simulation.step;
+  return {1 + 2 / dt * scene_.simulation.damping_stiffness,
+          4 / (dt * dt) + 2 / dt * scene_.simulation.damping_mass};
+}
+
 FrameSolverParams StandingFrame::dynamic_params() const {
   FrameSolverParams params = static_params();
   params.p_delta = false;
-  const double dt = scene_.simulation.step;
-  params.stiffness = 1 + 2 / dt * scene_.simulation.damping_stiffness;
-  params.mass = 4 / (dt * dt) + 2 / dt * scene_.simulation.damping_mass;
+  const Factored factored = factored_in_time();
+  params.stiffness = factored.stiffness;
+  params.mass = factored.mass;
   return params;
 }
 

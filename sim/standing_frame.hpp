@@ -126,6 +126,10 @@ class StandingFrame {
   void solve_anew();
   void balance();
   FrameSolverParams static_params() const;
+  struct Factored {
+    double stiffness = 1, mass = 0;  ///< so much of K and of M
+  };
+  Factored factored_in_time() const;
   FrameSolverParams dynamic_params() const;
   bool may_ring() const;
   void begin_dynamic();
