@@ -20,12 +20,15 @@ namespace {
 constexpr double kShortest = 1e-5;  // of a bond, by the size of the smaller chunk
 constexpr double kTie = 1e-9;       // utilisations this near are equal
 
-/// An anchor's end in the world: how its six numbers follow those of an edge's two corners.
+/// An anchor's end in the world: how its six numbers follow those of an edge's two corners, or the
+/// translations of all four.
 struct Anchor {
   std::uint32_t edge = 0;
+  bool is_straight = false;
   EdgeMotion motion{};
-  /// Where the 12 columns of an edge stand among the 24.
+  /// Where its 12 columns stand among the 24.
   std::size_t column(std::size_t i) const {
+    if (is_straight) return 6 * (i / 3) + i % 3;
     return i < 6 ? 6 * edge + i : 6 * ((edge + 1) % 4) + i - 6;
   }
 };
@@ -95,7 +98,6 @@ struct ChunkNetwork::Impl {
   bool is_condensed = false;
   std::vector<double> motion;
   PanelMatrix condensed{};
-  std::array<EdgeStiffness, 4> of_edges{};
   double highest = 0;  // utilisation at the last balance
 
   Impl(const WallAsset& asset, const Material& of, const PanelHold& in);
@@ -108,9 +110,6 @@ struct ChunkNetwork::Impl {
   BlockChange change_of(const Link& link, bool is_added) const;
   std::vector<double> loads() const;
   void condense();
-  void condense_edges();
-  template <class Take>
-  void each_anchor(const Take& take) const;
   void couple(std::span<double> columns) const;
   PanelMatrix corner_stiffness() const;
   Six world_motion(const Link& link, const PanelFreedoms& freedoms) const;
@@ -160,7 +159,9 @@ Link ChunkNetwork::Impl::make_link(const WallAsset& asset, const Bond& bond) {
     link.anchor = static_cast<std::uint32_t>(anchors.size());
     const std::uint32_t edge = edge_of(panel.corners, bond.centroid, bond.normal);
     ends.is_hinged = panel.hinged[edge];
-    anchors.push_back({edge, edge_motion(panel.corners, edge, ends.at_b)});
+    anchors.push_back({edge, panel.is_straight,
+                       panel.is_straight ? surface_motion(panel.corners, ends.at_b)
+                                         : edge_motion(panel.corners, edge, ends.at_b)});
   } else {
     ends.at_b = centres[bond.b];
     ends.site_b = sites[bond.b];
@@ -329,36 +330,7 @@ void ChunkNetwork::Impl::condense() {
     for (std::size_t c = 0; c < r; ++c)
       condensed[24 * r + c] = condensed[24 * c + r] =
           (condensed[24 * r + c] + condensed[24 * c + r]) / 2;
-  condense_edges();
   is_condensed = true;
-}
-
-template <class Take>
-void ChunkNetwork::Impl::each_anchor(const Take& take) const {
-  for (const Link& link : links)
-    if (link.b == kWorld && link.is_active) take(link, anchors[link.anchor]);
-}
-
-/// Force on the world's end of every anchor, per unit of the corners with the chunks in balance.
-void ChunkNetwork::Impl::condense_edges() {
-  const std::size_t rows = 6 * chunk_count();
-  of_edges = {};
-  each_anchor([&](const Link& link, const Anchor& anchor) {
-    const Matrix12& k = link.spring->stiffness();
-    std::array<std::array<double, 24>, 6> moved{}, force{};
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t c = 0; c < 12; ++c) moved[i][anchor.column(c)] = anchor.motion[i][c];
-    for (std::size_t r = 0; r < 6; ++r)
-      for (std::size_t i = 0; i < 6; ++i)
-        for (std::size_t c = 0; c < 24; ++c)
-          force[r][c] +=
-              k(static_cast<int>(6 + r), static_cast<int>(6 + i)) * moved[i][c] -
-              k(static_cast<int>(6 + r), static_cast<int>(i)) * motion[c * rows + 6 * link.a + i];
-    for (std::size_t r = 0; r < 12; ++r)
-      for (std::size_t i = 0; i < 6; ++i)
-        for (std::size_t c = 0; c < 24; ++c)
-          of_edges[anchor.edge][24 * r + c] += anchor.motion[i][r] * force[i][c];
-  });
 }
 
 Six ChunkNetwork::Impl::world_motion(const Link& link, const PanelFreedoms& freedoms) const {
@@ -466,28 +438,6 @@ PanelFreedoms ChunkNetwork::load() {
   PanelFreedoms load{};
   for (std::size_t c = 0; c < 24; ++c)
     for (std::size_t i = 0; i < f.size(); ++i) load[c] -= impl_->motion[c * f.size() + i] * f[i];
-  return load;
-}
-
-const std::array<EdgeStiffness, 4>& ChunkNetwork::edge_stiffness() {
-  impl_->condense();
-  return impl_->of_edges;
-}
-
-std::array<Twelve, 4> ChunkNetwork::edge_load() {
-  const std::vector<double> f = impl_->loads();
-  std::vector<double> x(f.size());
-  impl_->factor->solve(f, x);
-  std::array<Twelve, 4> load{};
-  impl_->each_anchor([&](const Link& link, const Anchor& anchor) {
-    const Matrix12& k = link.spring->stiffness();
-    for (std::size_t i = 0; i < 6; ++i) {
-      double force = 0;
-      for (std::size_t c = 0; c < 6; ++c)
-        force += k(static_cast<int>(6 + i), static_cast<int>(c)) * x[6 * link.a + c];
-      for (std::size_t r = 0; r < 12; ++r) load[anchor.edge][r] += anchor.motion[i][r] * force;
-    }
-  });
   return load;
 }
 

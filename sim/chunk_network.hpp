@@ -16,8 +16,6 @@ namespace sunder {
 
 /// Symmetric 24 × 24, row by row, of PanelFreedoms.
 using PanelMatrix = std::array<double, 576>;
-/// 12 × 24, row by row: forces and moments at the two corners of an edge by PanelFreedoms.
-using EdgeStiffness = std::array<double, 288>;
 
 /// A force on a chunk, N, at a point, m; wall frame.
 struct ChunkForce {
@@ -47,10 +45,10 @@ struct BrokenBond {
 };
 
 /// A fractured wall or floor slab as a network of rigid chunks joined by their elastic faces
-/// (BondSpring), held through its anchors by the edges of what it hangs in (edge_motion): an
-/// element of a frame with 24 freedoms, condensed exactly. Chunks that no path of bonds joins to an
-/// anchor are *loose*: they bear nothing and load nothing until the caller takes them away. Small
-/// displacements. The same calls give the same bits. Not thread-safe.
+/// (BondSpring), held through its anchors by what it hangs in (PanelHold): an element of a frame
+/// with 24 freedoms, or the 12 translations among them, condensed exactly. Chunks that no path of
+/// bonds joins to an anchor are *loose*: they bear nothing and load nothing until the caller takes
+/// them away. Small displacements. The same calls give the same bits. Not thread-safe.
 class ChunkNetwork {
  public:
   /// Weight by the material's density. Bonds shorter than 1e-5 of the size of a chunk bear nothing.
@@ -71,9 +69,6 @@ class ChunkNetwork {
   /// What weight and contacts put on the corners while these stand still: forces and moments.
   /// After a change as stiffness(), else O(24 chunks).
   PanelFreedoms load();
-  /// The edges' shares of both: what each edge's two corners must put on the anchors of that edge.
-  const std::array<EdgeStiffness, 4>& edge_stiffness();
-  std::array<Twelve, 4> edge_load();  ///< with the corners at rest
   /// The panel in balance with its corners at `freedoms`. One solve.
   PanelState solve(const PanelFreedoms& freedoms) const;
   /// What the anchors of an edge put on the panel in that state, about a point.

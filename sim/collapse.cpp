@@ -90,6 +90,7 @@ void CollapseRun::add_panels() {
                    .solids = solids_,
                    .break_off = [this](std::uint32_t part) { break_off(part); },
                    .is_intact = [this](std::uint32_t j) { return joints_[j].intact; },
+                   .broken_joints = [this] { return result_.broken_joints.size(); },
                    .track_of =
                        [this](std::uint32_t part) {
                          std::uint32_t& track = parts_[part].track;
@@ -260,10 +261,7 @@ void CollapseRun::step_once(double end) {
         disturbed_ |= panels_->any_awake();
       }
       break_overloaded();
-      if (panels_) {
-        panels_->crack();
-        panels_->follow_frame();
-      }
+      if (panels_) crack_panels();
     }
     if (arrival) {
       ++arrivals;
@@ -446,6 +444,10 @@ CollapseResult CollapseRun::outcome() {
         " joints were over their strength at rest and broke before anything happened; look at "
         "utilisation_at_rest: more \"iterations\", a shorter \"step\" or a longer \"settle\" make "
         "the solver's forces truer, stronger sections or joints the building");
+  if (unsettled_steps_ > 0)
+    r.warnings.push_back("in " + std::to_string(unsettled_steps_) +
+                         " steps panels and joints still broke each other after 100 rounds; what "
+                         "was over its strength then broke in the next step");
   r.hash = recorder_.hash();
   r.recording = recording();
   if (panels_) add_outcome(panels_->finish(r.recording));

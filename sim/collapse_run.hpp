@@ -84,6 +84,7 @@ class CollapseRun {
   // joint_failure.cpp: loads, and what breaks.
   void break_overloaded();
   void cascade();
+  void crack_panels();
   void keep_most_utilised(std::vector<Failure>& failures) const;
   void give_way(std::size_t broken_before);
   double borne_share(std::uint32_t part, std::size_t broken_before) const;
@@ -123,9 +124,11 @@ class CollapseRun {
   bool posts_known_ = false;  ///< nor a post
   bool breaks_ = false;       ///< settled: joints can break
   bool disturbed_ = false;    ///< something has happened to the building
-  double added_load_ = 0;     ///< N/m²
-  double baseline_ = 0;       ///< potential energy of the projectiles where they started, J
-  double start_ = 0;          ///< energy of the standing frame at time 0, J
+  std::uint64_t unsettled_steps_ =
+      0;                   ///< panels and joints still broke each other after all rounds
+  double added_load_ = 0;  ///< N/m²
+  double baseline_ = 0;    ///< potential energy of the projectiles where they started, J
+  double start_ = 0;       ///< energy of the standing frame at time 0, J
   Vec3 impulse_;
   double largest_momentum_ = 0, largest_momentum_error_ = 0;
 };

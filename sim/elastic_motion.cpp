@@ -236,6 +236,15 @@ void ElasticMotion::set_mass(std::uint32_t part, double mass) {
   fracture_ += before - energy();
 }
 
+/// What their cracked parts had stored is gone.
+void ElasticMotion::change_panels(std::span<const PanelStiffness> changed) {
+  standing_.wake();
+  const double before = energy();
+  standing_.change_panels(changed);
+  standing_.carry_on();
+  fracture_ += before - energy();
+}
+
 /// Free pieces grow heavier too.
 void ElasticMotion::add_load(double more) {
   standing_.wake();

@@ -45,8 +45,13 @@ class ElasticMotion final : public FrameMotion {
   BodyId give_up_shape(std::uint32_t part) override;
   void take_shape(std::uint32_t part, BodyId body) override { bodies_.take_shape(part, body); }
   void set_mass(std::uint32_t part, double mass) override;
-  Vec3 displacement(std::uint32_t node) const override { return standing_.displacement(node); }
-  Vec3 rotation(std::uint32_t node) const override { return standing_.rotation(node); }
+  void set_panels(std::vector<PanelElement> elements) override {
+    standing_.set_panels(std::move(elements));
+  }
+  void change_panels(std::span<const PanelStiffness> changed) override;
+  std::optional<Twelve> panel_motion(std::uint32_t part) const override {
+    return standing_.panel_motion(part);
+  }
   Leaving release(std::uint32_t part) override { return bodies_.hand_over(part); }
   Pose pose(std::uint32_t part) const override { return bodies_.pose(part); }
   bool is_moving(std::uint32_t part) const override;

@@ -193,7 +193,6 @@ void FrameSolver::Impl::restrain_rotations() {
       const Matrix12 stiffness = stiffness_of(elements[end / 2]);
       for (int i = 0; i < 9; ++i) sum[i / 3][i % 3] += stiffness(offset + i / 3, offset + i % 3);
     }
-    stiffen(n, sum);
     const PrincipalAxes main =
         principal_axes({sum[0][0], sum[1][1], sum[2][2], sum[0][1], sum[0][2], sum[1][2]});
     BlockChange block = springs(n, 0, 0);

@@ -11,6 +11,7 @@
 
 #include "sim/collapse.hpp"
 #include "sim/contact_order.hpp"
+#include "sim/panel_element.hpp"
 #include "sim/rigid_world.hpp"
 
 namespace sunder {
@@ -77,9 +78,12 @@ class FrameMotion {
   virtual void take_shape(std::uint32_t part, BodyId body) = 0;
   /// So much is left of a part that stands, kg.
   virtual void set_mass(std::uint32_t part, double mass) = 0;
-  /// How a node of the frame moved from where it was drawn: m, and rad.
-  virtual Vec3 displacement(std::uint32_t) const { return {}; }
-  virtual Vec3 rotation(std::uint32_t) const { return {}; }
+  /// Slabs and walls that are elastic from now, at rest, on.
+  virtual void set_panels(std::vector<PanelElement>) {}
+  /// Some of them are softer now.
+  virtual void change_panels(std::span<const PanelStiffness>) {}
+  /// Of an elastic panel's corners since then, m, world; none: it takes no part (any more).
+  virtual std::optional<Twelve> panel_motion(std::uint32_t) const { return {}; }
   /// A part without joints goes, with the motion it has; its energy goes along.
   struct Leaving {
     Pose pose;  ///< of its frame

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slabs that are elastic: elements of 24 freedoms between the members along their edges.
+// Slabs and walls that are elastic: elements of 12 freedoms between the nodes at their corners.
 #include <algorithm>
 
 #include "meshing/error.hpp"
@@ -13,67 +13,38 @@ constexpr std::uint32_t kFixed = FrameLinks::kFixed;
 constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
     {{0, 1}, {2, 3}, {1, 2}, {3, 0}, {0, 2}, {1, 3}}};
 
-Vec3 three(const Twelve& v, std::size_t first) {
-  return {v[first], v[first + 1], v[first + 2]};
-}
-
-bool bears(const PanelElement& element, std::size_t edge) {
-  const auto some = [](double value) { return value != 0; };
-  return std::ranges::any_of(element.edges[edge], some) ||
-         std::ranges::any_of(element.load[edge], some);
-}
-
-double product(std::span<const double> row, const PanelFreedoms& v) {
-  double sum = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) sum += row[i] * v[i];
-  return sum;
-}
-
-PanelFreedoms times(const PanelMatrix& matrix, const PanelFreedoms& v) {
-  PanelFreedoms result{};
-  for (std::size_t r = 0; r < 24; ++r) result[r] = product({&matrix[24 * r], 24}, v);
+Twelve times(const Matrix12& matrix, const Twelve& v) {
+  Twelve result{};
+  for (std::size_t r = 0; r < 12; ++r)
+    for (std::size_t c = 0; c < 12; ++c) result[r] += matrix.at[12 * r + c] * v[c];
   return result;
 }
 
-/// Edges sum to the symmetric matrix, to rounding of the sum alone.
-void make_symmetric(PanelElement& element, const PanelMatrix& matrix) {
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    const std::size_t before = (corner + 3) % 4;
-    const bool first = bears(element, corner);
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t c = 0; c < 24; ++c) {
-        double& of_first = element.edges[corner][24 * i + c];
-        double& of_second = element.edges[before][24 * (6 + i) + c];
-        const double whole = matrix[24 * (6 * corner + i) + c];
-        (first ? of_first : of_second) = whole - (first ? of_second : of_first);
-      }
-  }
-}
-
-/// The loads of the edges at the corners.
-PanelFreedoms load_of(const PanelElement& element) {
-  PanelFreedoms sum{};
-  for (std::size_t k = 0; k < 4; ++k)
-    for (std::size_t i = 0; i < 12; ++i)
-      sum[i < 6 ? 6 * k + i : 6 * ((k + 1) % 4) + i - 6] += element.load[k][i];
+double product(const Twelve& a, const Twelve& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 12; ++i) sum += a[i] * b[i];
   return sum;
 }
 
+const std::array<std::uint32_t, 4>& corners_of(const Frame& frame, std::uint32_t part) {
+  return part < frame.wall_part(0) ? frame.slabs[part - frame.slab_part(0)].nodes
+                                   : frame.walls[part - frame.wall_part(0)].nodes;
+}
+
 /// What stands in the factor for a pair of corners.
-BlockChange block_of(const PanelMatrix& matrix, const std::array<std::uint32_t, 4>& node,
+BlockChange block_of(const Matrix12& matrix, const std::array<std::uint32_t, 4>& node,
                      std::size_t pair, double factor) {
   const auto [p, q] = kPairs[pair];
   const bool diagonal = pair < 2, first = node[p] < kFixed, second = node[q] < kFixed;
   const auto at = [&](std::size_t a, std::size_t b, int i, int j) {
-    return factor *
-           matrix[24 * (6 * a + static_cast<std::size_t>(i)) + 6 * b + static_cast<std::size_t>(j)];
+    return factor * matrix(static_cast<int>(3 * a) + i, static_cast<int>(3 * b) + j);
   };
   BlockChange block{0xFFFFFFFFu, 0xFFFFFFFFu, {}};
   if (!(first && second) && !(diagonal && (first || second))) return block;
   block.a = node[first ? p : q];
   block.b = node[second ? q : p];
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
       if (diagonal) block.delta(i, j) = first ? at(p, p, i, j) : at(q, q, i, j);
       if (!first || !second) continue;
       if (diagonal) block.delta(6 + i, 6 + j) = at(q, q, i, j);
@@ -85,44 +56,56 @@ BlockChange block_of(const PanelMatrix& matrix, const std::array<std::uint32_t, 
 
 }  // namespace
 
-void FrameSolver::Impl::set_panel(std::uint32_t part, const PanelElement& element) {
-  const std::uint32_t plate = part - frame.slab_part(0);
-  if (!params.panels || part < frame.slab_part(0) || part >= frame.wall_part(0) ||
-      frame.slabs[plate].pattern == kNoPart)
-    throw Error(ErrorCode::input, frame.part_name(part) +
-                                      ": cannot become elastic, only a slab with a pattern can, in "
-                                      "a frame solver that has room for panels");
-  if (!std::ranges::is_permutation(frame.slabs[plate].nodes, element.nodes))
-    throw Error(ErrorCode::input,
-                frame.part_name(part) + ": the nodes of its element are not those of its corners");
-  auto panel = std::ranges::lower_bound(panels, plate, {}, &Panel::plate);
-  if (panel == panels.end() || panel->plate != plate) {
-    panel = panels.insert(panel, Panel{.plate = plate, .element = {}, .blocks = {}});
-    panel->blocks.fill({kNone, kNone, {}});
+/// Pairs of nodes that elements couple.
+void FrameSolver::Impl::add_panel_edges(FrameLinks::Edges& edges) const {
+  for (const PanelElement& panel : params.panels) {
+    const auto& nodes = panel.nodes;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) links.add_edges(nodes[i], nodes[k], edges);
   }
-  panel->element = element;
-  panel->stiffness = stiffness_of(element);
-  make_symmetric(panel->element, panel->stiffness);
-  place_edges(*panel);
-  update({}, {});
 }
 
-void FrameSolver::Impl::clear_panel(std::uint32_t part) {
-  const auto panel = std::ranges::find(panels, part - frame.slab_part(0), &Panel::plate);
-  if (panel == panels.end()) return;
-  panel->element.edges = {};
-  panel->element.load = {};
-  panel->stiffness = {};
-  update({}, {});
-  panels.erase(panel);
+void FrameSolver::Impl::make_panels() {
+  for (const PanelElement& element : params.panels) {
+    if (element.part < frame.slab_part(0) || element.part >= frame.part_count())
+      throw Error(ErrorCode::input, "part " + std::to_string(element.part) +
+                                        " cannot be elastic between four nodes, slabs and walls "
+                                        "can");
+    panels.push_back({.element = element, .blocks = {}});
+    panels.back().blocks.fill({kNone, kNone, {}});
+    take_element(panels.back(), element);
+  }
+  std::ranges::sort(panels, {}, [](const Panel& p) { return p.element.part; });
 }
 
-/// The members along its edges, and where these are hinged.
+void FrameSolver::Impl::take_element(Panel& panel, const PanelElement& element) const {
+  if (!std::ranges::is_permutation(corners_of(frame, element.part), element.nodes))
+    throw Error(ErrorCode::input, frame.part_name(element.part) +
+                                      ": the nodes of its element are not those of its corners");
+  panel.element = element;
+  panel.pull = times(element.stiffness, element.at_rest);
+  panel.is_new = true;
+  place_edges(panel);
+}
+
+void FrameSolver::Impl::set_panels(std::span<const PanelElement> wanted) {
+  for (const PanelElement& element : wanted) {
+    const auto panel = std::ranges::lower_bound(panels, element.part, {},
+                                                [](const Panel& p) { return p.element.part; });
+    if (panel == panels.end() || panel->element.part != element.part)
+      throw Error(ErrorCode::input, "part " + std::to_string(element.part) +
+                                        " is none of the elements that the frame solver was made "
+                                        "with");
+    take_element(*panel, element);
+  }
+  if (!wanted.empty()) update({}, {});
+}
+
+/// The members along its edges, and what joins it to them.
 void FrameSolver::Impl::place_edges(Panel& panel) const {
-  const PlateSupport& plate = plates[panel.plate];
+  const PlateSupport& plate = plates[panel.element.part - frame.slab_part(0)];
   panel.member.fill(kNone);
   panel.joint.fill(kNone);
-  panel.hinge = {{{kNone, kNone}, {kNone, kNone}, {kNone, kNone}, {kNone, kNone}}};
   for (std::size_t k = 0; k < 4; ++k) {
     const std::uint32_t from = panel.element.nodes[k], to = panel.element.nodes[(k + 1) % 4];
     for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
@@ -134,189 +117,98 @@ void FrameSolver::Impl::place_edges(Panel& panel) const {
       panel.joint[k] = plate.joints[i];
     }
   }
-  for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
-    const FrameJoint& joint = frame.joints[j];
-    if (joint.node == kNoPart || frame.classes[joint.joint_class].rigid) continue;
-    for (std::size_t k = 0; k < 4; ++k)
-      if (panel.member[k] == joint.a)
-        panel.hinge[k][panel.element.nodes[k] == joint.node ? 0 : 1] = j;
-  }
 }
 
 /// Solver nodes of its corners, as the members along its edges have them.
 void FrameSolver::Impl::place_corners(Panel& panel) const {
   panel.node.fill(kNone);
-  panel.active = !gone[plates[panel.plate].part];
+  bool holds = !gone[panel.element.part];
   const auto take = [&](std::size_t corner, std::uint32_t node) {
-    panel.active &= panel.node[corner] == kNone || panel.node[corner] == node;
+    holds &= panel.node[corner] == kNone || panel.node[corner] == node;
     panel.node[corner] = node;
   };
-  bool any = false;
   for (std::size_t k = 0; k < 4; ++k) {
-    if (!bears(panel.element, k)) continue;
-    any = true;
-    const std::size_t next = (k + 1) % 4;
     const std::uint32_t m = panel.member[k];
-    if (m == kNone) {
-      panel.active = false;
-      continue;
-    }
-    panel.active &= links.intact(panel.joint[k]) && members[m].role == Role::elastic &&
-                    links.end(m, 0).held && links.end(m, 1).held;
+    if (m == kNone) continue;
+    holds &= links.intact(panel.joint[k]) && members[m].role == Role::elastic &&
+             links.end(m, 0).held && links.end(m, 1).held;
     const bool along = frame.members[m].from == panel.element.nodes[k];
     take(k, members[m].node[along ? 0 : 1]);
-    take(next, members[m].node[along ? 1 : 0]);
+    take((k + 1) % 4, members[m].node[along ? 1 : 0]);
   }
-  panel.active &= any;
+  for (const std::uint32_t node : panel.node) holds &= node <= kFixed;
+  panel.is_lost |= !holds;
 }
 
 void FrameSolver::Impl::renew_panels() {
   for (Panel& panel : panels) {
+    if (panel.is_lost) continue;
     const std::array<std::uint32_t, 4> old = panel.node;
     place_corners(panel);
+    if (!panel.is_lost && !panel.is_new && panel.node == old) continue;
+    panel.is_new = false;
     for (std::size_t pair = 0; pair < kPairs.size(); ++pair) {
       BlockChange next{kNone, kNone, {}};
-      if (panel.active) next = block_of(panel.stiffness, panel.node, pair, params.stiffness);
+      if (!panel.is_lost)
+        next = block_of(panel.element.stiffness, panel.node, pair, params.stiffness);
       set_in_factor(panel.blocks[pair], next);
     }
-    for (const auto& nodes : {old, panel.node})
-      for (const std::uint32_t node : nodes)
-        if (node < kFixed) to_restrain[node] = 1;
   }
 }
 
-/// Motion of its corners from where it is at rest.
-PanelFreedoms FrameSolver::Impl::strains_of(const Panel& panel,
-                                            std::span<const double> motion) const {
-  PanelFreedoms result{};
-  for (std::size_t i = 0; i < 24; ++i) {
-    const std::uint32_t node = panel.node[i / 6];
-    if (node == kNone) continue;
-    const double now = node < kFixed && !motion.empty() ? motion[6 * std::size_t{node} + i % 6] : 0;
-    result[i] = now - panel.element.at_rest[i];
+/// Of its nodes, from where it is at rest if `from_rest`.
+Twelve FrameSolver::Impl::motion_of(const Panel& panel, std::span<const double> motion,
+                                    bool from_rest) const {
+  Twelve result{};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const std::uint32_t node = panel.node[i / 3];
+    if (node < kFixed && !motion.empty()) result[i] = motion[6 * std::size_t{node} + i % 3];
+    if (from_rest) result[i] -= panel.element.at_rest[i];
   }
   return result;
 }
 
+void FrameSolver::Impl::add_at_corners(const Panel& panel, const Twelve& force,
+                                       std::span<double> result) {
+  for (std::size_t i = 0; i < 12; ++i)
+    if (panel.node[i / 3] < kFixed) result[6 * std::size_t{panel.node[i / 3]} + i % 3] += force[i];
+}
+
 /// result += the panels' stiffness × motion.
 void FrameSolver::Impl::add_panels(std::span<const double> motion, std::span<double> result) const {
-  for (const Panel& panel : panels) {
-    if (!panel.active) continue;
-    PanelFreedoms moved{};
-    for (std::size_t i = 0; i < 24; ++i)
-      if (panel.node[i / 6] < kFixed) moved[i] = motion[6 * std::size_t{panel.node[i / 6]} + i % 6];
-    const PanelFreedoms force = times(panel.stiffness, moved);
-    for (std::size_t i = 0; i < 24; ++i)
-      if (panel.node[i / 6] < kFixed)
-        result[6 * std::size_t{panel.node[i / 6]} + i % 6] += force[i];
-  }
+  for (const Panel& panel : panels)
+    if (!panel.is_lost)
+      add_at_corners(panel, times(panel.element.stiffness, motion_of(panel, motion, false)),
+                     result);
 }
 
 /// result += what they put on nodes that stand where the frame was drawn.
 void FrameSolver::Impl::add_panel_loads(std::span<double> result) const {
-  for (const Panel& panel : panels) {
-    if (!panel.active) continue;
-    const PanelFreedoms force = times(panel.stiffness, strains_of(panel, {}));
-    const PanelFreedoms load = load_of(panel.element);
-    for (std::size_t i = 0; i < 24; ++i)
-      if (panel.node[i / 6] < kFixed)
-        result[6 * std::size_t{panel.node[i / 6]} + i % 6] -= force[i] + load[i];
-  }
-}
-
-/// Their edges' forces pass through the ends of the members along them.
-void FrameSolver::Impl::hang_panels() {
-  on_edges.clear();
-  if (panels.empty()) return;
-  on_edges.assign(members.size(), {});
-  for (Panel& panel : panels) {
-    if (!panel.active) continue;
-    const PanelFreedoms strains = strains_of(panel, u);
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t i = 0; i < 12; ++i)
-        panel.force[k][i] =
-            panel.element.load[k][i] + product({&panel.element.edges[k][24 * i], 24}, strains);
-      const std::uint32_t m = panel.member[k];
-      if (m == kNone || !bears(panel.element, k)) continue;
-      const bool along = frame.members[m].from == panel.element.nodes[k];
-      for (std::size_t i = 0; i < 12; ++i) {
-        std::uint32_t to = m;
-        std::size_t end = along ? i / 6 : 1 - i / 6;
-        const std::uint32_t hinge = panel.hinge[k][i / 6];
-        if (i % 6 >= 3 && hinge != kNone && links.intact(hinge)) {
-          to = frame.joints[hinge].b;
-          end = frame.joints[hinge].end_b;
-        }
-        if (to < members.size()) on_edges[to][6 * end + i % 6] += panel.force[k][i];
-      }
-    }
-  }
-  for (std::size_t m = 0; m < members.size(); ++m)
-    for (std::size_t i = 0; i < 12; ++i) forces[m][i] += on_edges[m][i];
-}
-
-/// Adds the stiffness against rotations of a node.
-void FrameSolver::Impl::stiffen(std::uint32_t node, double (&sum)[3][3]) const {
   for (const Panel& panel : panels)
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      if (!panel.active || panel.node[corner] != node) continue;
-      for (std::size_t i = 0; i < 9; ++i)
-        sum[i / 3][i % 3] +=
-            panel.stiffness[24 * (6 * corner + 3 + i / 3) + 6 * corner + 3 + i % 3];
-    }
-}
-
-/// Force and torque about the joint's point on the carrier of an edge, world.
-JointLoad FrameSolver::Impl::panel_load(std::uint32_t j) const {
-  JointLoad load;
-  const FrameJoint& joint = frame.joints[j];
-  const auto panel =
-      std::ranges::lower_bound(panels, joint.a - frame.slab_part(0), {}, &Panel::plate);
-  if (panel == panels.end() || frame.slab_part(panel->plate) != joint.a || !panel->active)
-    return load;
-  const auto k =
-      static_cast<std::size_t>(std::ranges::find(panel->joint, j) - panel->joint.begin());
-  if (k == 4 || !bears(panel->element, k)) return load;
-  for (std::size_t end = 0; end < 2; ++end) {
-    const Vec3 at = frame.nodes[panel->element.nodes[(k + end) % 4]].position;
-    const Vec3 force = -1 * three(panel->force[k], 6 * end);
-    load.force = load.force + force;
-    load.torque =
-        load.torque - three(panel->force[k], 6 * end + 3) + cross(at - joint.point, force);
-  }
-  return load;
+    if (!panel.is_lost) add_at_corners(panel, panel.pull, result);
 }
 
 /// What panels store, less what their stiffness would if they were at rest where it was drawn.
 double FrameSolver::Impl::strain_of_panels() const {
-  double energy = 0;
+  double twice = 0;
   for (const Panel& panel : panels) {
-    if (!panel.active) continue;
-    const PanelFreedoms strains = strains_of(panel, u), load = load_of(panel.element);
-    const PanelFreedoms force = times(panel.stiffness, strains);
-    PanelFreedoms moved{};
-    for (std::size_t i = 0; i < 24; ++i)
-      if (panel.node[i / 6] < kFixed) moved[i] = u[6 * std::size_t{panel.node[i / 6]} + i % 6];
-    const PanelFreedoms all = times(panel.stiffness, moved);
-    for (std::size_t i = 0; i < 24; ++i)
-      energy += (force[i] / 2 + load[i]) * strains[i] - all[i] * moved[i] / 2;
+    if (panel.is_lost) continue;
+    const Twelve q = motion_of(panel, u, true), all = motion_of(panel, u, false);
+    twice += product(q, times(panel.element.stiffness, q)) -
+             product(all, times(panel.element.stiffness, all));
   }
-  return energy;
+  return twice / 2;
 }
 
-void FrameSolver::set_panel(std::uint32_t part, const PanelElement& element) {
-  impl_->set_panel(part, element);
+void FrameSolver::set_panels(std::span<const PanelElement> elements) {
+  impl_->set_panels(elements);
 }
 
-void FrameSolver::clear_panel(std::uint32_t part) {
-  impl_->clear_panel(part);
-}
-
-Vec3 FrameSolver::panel_moment(std::uint32_t j) const {
-  const FrameJoint& joint = impl_->frame.joints[j];
-  if (impl_->on_edges.empty() || joint.node == kNoPart) return {};
-  const Vec3 moment = three(impl_->on_edges[joint.a], 6 * std::size_t{joint.end_a} + 3);
-  return (joint.end_a == 1 ? 1.0 : -1.0) * into(joint.axes, moment);
+std::optional<Twelve> FrameSolver::panel_motion(std::uint32_t part) const {
+  const auto panel = std::ranges::lower_bound(impl_->panels, part, {},
+                                              [](const Impl::Panel& p) { return p.element.part; });
+  if (panel == impl_->panels.end() || panel->element.part != part || panel->is_lost) return {};
+  return impl_->motion_of(*panel, impl_->u, true);
 }
 
 }  // namespace sunder

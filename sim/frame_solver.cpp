@@ -66,6 +66,7 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
   });
   make_members();
   make_diaphragms();
+  make_panels();
   to_restrain.assign(links.node_count(), 1);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges = links.edges();
   std::vector<std::uint32_t> all_members(members.size()), all_plates(plates.size());
@@ -75,9 +76,7 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[0], slab.nodes[2], edges);
     for (const FrameSlab& slab : frame.slabs) links.add_edges(slab.nodes[1], slab.nodes[3], edges);
   }
-  for (const FrameSlab& slab : frame.slabs)
-    for (std::size_t i = 0; i < 4 && params.panels && slab.pattern != kNoPart; ++i)
-      for (std::size_t k = i + 1; k < 4; ++k) links.add_edges(slab.nodes[i], slab.nodes[k], edges);
+  add_panel_edges(edges);
   if (links.node_count() > 0 && like != nullptr && like->factor) {
     factor.emplace(links.node_count(), edges, *like->factor);
   } else if (links.node_count() > 0) {
@@ -176,7 +175,6 @@ void FrameSolver::Impl::recover() {
   }
   add_diaphragms(u, stiff);
   add_panels(u, stiff);
-  hang_panels();
   laid.carries = pieces.empty();
   turn_hinges();
   for (std::uint32_t s = 0; s < diaphragms.size(); ++s) shear_diaphragm(s);
@@ -195,7 +193,6 @@ double FrameSolver::Impl::axial(std::uint32_t m) const {
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
     Vec3 force = three(forces[m], 6 * end);
     if (members[m].role == Role::elastic) force = force - three(fixed[m], 6 * end);
-    if (!on_edges.empty()) force = force - three(on_edges[m], 6 * end);
     sum += (end == 0 ? -0.5 : 0.5) * dot(x, force);
   }
   return members[m].present() ? sum : 0;
@@ -335,9 +332,8 @@ JointLoad FrameSolver::joint_load(std::uint32_t j) const {
   if (!impl_->links.intact(j)) return {};
   if (joint.node == kNoPart) {
     const JointLoad& load = impl_->plate_loads[j];
-    const JointLoad elastic = impl_->panel_load(j);
-    return {into(joint.axes, load.force + impl_->diaphragm_shear(j) + elastic.force),
-            into(joint.axes, load.torque + elastic.torque)};
+    return {into(joint.axes, load.force + impl_->diaphragm_shear(j)),
+            into(joint.axes, load.torque)};
   }
   const double side = joint.end_a == 1 ? 1 : -1;
   return {side * into(joint.axes, reaction(j)), side * into(joint.axes, reaction_moment(j))};

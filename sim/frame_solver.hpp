@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,9 +24,9 @@ struct FrameSolverParams {
   /// Stiffness × this + mass × that is what is factored: {1, 0} for statics; Newmark asks for
   /// others.
   double stiffness = 1, mass = 0;
-  /// The factor has room for slabs with patterns as elements: 26 to 37 % more numbers (towers of 4
-  /// × 5 × 6 and 10 × 10 × 30 posts and storeys).
-  bool panels = false;
+  /// Slabs and walls that are elements of the stiffness, see set_panels(). Throws Error{input} for
+  /// other parts, and nodes that are not their corners.
+  std::vector<PanelElement> panels = {};
   /// A piece of a building that flies, as a frame of its own: mechanisms in it are held and told of
   /// as in pieces that broke off, and walls without a lower beam hang on what is left of them.
   bool free = false;
@@ -86,12 +87,12 @@ class FrameSolver {
   void remove_parts(std::span<const std::uint32_t> parts);
   /// So much is left of a slab or wall panel, kg.
   void set_plate_mass(std::uint32_t part, double mass);
-  /// A slab with a pattern becomes an element of the stiffness, or another one: see PanelElement.
-  /// Throws Error{input} unless `panels`, for other parts and nodes that are not its corners.
-  void set_panel(std::uint32_t part, const PanelElement& element);
-  void clear_panel(std::uint32_t part);
-  /// Of a member's own joint: what of joint_load().torque comes from panels on its edges.
-  Vec3 panel_moment(std::uint32_t joint) const;
+  /// Slabs and walls become other elements of the stiffness. What they put on a node passes no
+  /// joint there. Throws Error{input} for parts that are none of the parameters' `panels`, and
+  /// nodes that are not their corners.
+  void set_panels(std::span<const PanelElement> elements);
+  /// Of the nodes of an element from where it is at rest, m; none: it takes no part (any more).
+  std::optional<Twelve> panel_motion(std::uint32_t part) const;
   /// A plastic hinge at the end of a joint's part a. It turns about the section's axes while its
   /// moments are held, else it is rigid with the rotation that is left. Joint axes, y and z only;
   /// signs as JointLoad, so that moment · rotation is work done.

@@ -66,19 +66,16 @@ struct FrameSolver::Impl {
     std::array<Vec3, 2> moment{}, rotation{};
     std::array<bool, 2> flows{};
   };
-  /// A slab as an element of the stiffness.
+  /// A slab or wall as an element of the stiffness.
   struct Panel {
-    std::uint32_t plate = kNone;
     PanelElement element;
-    PanelMatrix stiffness{};
+    Twelve pull{};  ///< on nodes that stand where the frame was drawn, N
     std::array<std::uint32_t, 4> member{kNone, kNone, kNone, kNone};  ///< along each edge
-    std::array<std::uint32_t, 4> joint{kNone, kNone, kNone, kNone};   ///< of the plate with it
-    /// Joints of a member's own ends that pass no moment, by edge and its corners; kNone: none.
-    std::array<std::array<std::uint32_t, 2>, 4> hinge{};
-    std::array<std::uint32_t, 4> node{kNone, kNone, kNone, kNone};  ///< solver nodes; kFixed
-    bool active = false;
+    std::array<std::uint32_t, 4> joint{kNone, kNone, kNone, kNone};   ///< of the panel with it
+    std::array<std::uint32_t, 4> node{kNone, kNone, kNone, kNone};    ///< solver nodes; kFixed
+    bool is_new = false;                ///< the element is not in the factor yet
+    bool is_lost = false;               ///< takes no part any more
     std::array<BlockChange, 6> blocks;  ///< in the factor
-    std::array<Twelve, 4> force{};      ///< of what carries the edges on them, last displacements
   };
   /// What holds together but not to the ground.
   struct Piece {
@@ -149,18 +146,18 @@ struct FrameSolver::Impl {
   double strain_of_hinges() const;
   double work_of(const FrameLoads& loads);
 
-  // frame_panels.cpp: slabs that are elastic.
-  void set_panel(std::uint32_t part, const PanelElement& element);
+  // frame_panels.cpp: slabs and walls that are elastic.
+  void add_panel_edges(FrameLinks::Edges& edges) const;
+  void make_panels();
+  void take_element(Panel& panel, const PanelElement& element) const;
+  void set_panels(std::span<const PanelElement> wanted);
   void place_edges(Panel& panel) const;
   void place_corners(Panel& panel) const;
-  void clear_panel(std::uint32_t part);
   void renew_panels();
-  PanelFreedoms strains_of(const Panel& panel, std::span<const double> motion) const;
+  Twelve motion_of(const Panel& panel, std::span<const double> motion, bool from_rest) const;
+  static void add_at_corners(const Panel& panel, const Twelve& force, std::span<double> result);
   void add_panels(std::span<const double> motion, std::span<double> result) const;
   void add_panel_loads(std::span<double> result) const;
-  void hang_panels();
-  void stiffen(std::uint32_t node, double (&sum)[3][3]) const;
-  JointLoad panel_load(std::uint32_t joint) const;
   double strain_of_panels() const;
 
   // frame_loads.cpp: from loads to nodal forces.
@@ -224,7 +221,7 @@ struct FrameSolver::Impl {
   std::vector<PlateSupport> plates;
   std::vector<std::vector<std::uint32_t>> plates_on;  ///< per member
   std::vector<Diaphragm> diaphragms;                  ///< per slab; none for "load"
-  std::vector<Panel> panels;                          ///< by plate
+  std::vector<Panel> panels;                          ///< by part
   std::vector<std::uint8_t> gone;                     ///< per part: removed
   std::vector<std::uint32_t> piece_of_node;           ///< kNone: on the ground
   std::vector<Piece> pieces;
@@ -241,7 +238,6 @@ struct FrameSolver::Impl {
   // Of the last loads.
   std::vector<double> live_line;       ///< kg/m that live loads add; empty: none
   std::vector<Twelve> fixed, forces;   ///< per member: of the nodes on it, world
-  std::vector<Twelve> on_edges;        ///< per member, of `forces` what panels ask; empty: none
   std::vector<MassField> fields;       ///< per piece; last: what stands on the ground
   std::vector<JointLoad> plate_loads;  ///< per joint: force and torque on the carrier, world
   Weight weight;

@@ -63,6 +63,27 @@ void CollapseRun::cascade() {
   }
 }
 
+/// Panels crack, joints take over what they bore, and so on. While the frame rings displacements
+/// stay, and that is one round.
+void CollapseRun::crack_panels() {
+  for (int round = 0; panels_->crack(); ++round) {
+    panels_->follow_frame();
+    if (round == kMostRounds) {
+      ++unsettled_steps_;
+      break;
+    }
+    if (!breaks_ || !motion_->redistributes()) continue;
+    std::vector<Failure> overloads;
+    read_loads(overloads);
+    check_posts(overloads);
+    keep_most_utilised(overloads);
+    break_joints(std::move(overloads));
+    cascade();
+    panels_->follow_frame();
+  }
+  panels_->follow_frame();
+}
+
 void CollapseRun::keep_most_utilised(std::vector<Failure>& failures) const {
   double most = 0;
   for (const Failure& failure : failures) most = std::max(most, failure.utilisation);

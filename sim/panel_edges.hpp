@@ -21,6 +21,9 @@ struct PanelHold {
   PanelCorners corners{};
   /// Edges on which the panel's anchors turn freely about the edge: a slab that lies on beams.
   std::array<bool, 4> hinged{};
+  /// How its anchors follow the corners: by their translations alone (surface_motion), else as
+  /// beams between them do (edge_motion).
+  bool is_straight = false;
 };
 
 /// How a place on an edge follows its two corners: six numbers of the place, row by row, from those
@@ -36,5 +39,11 @@ std::uint32_t edge_of(const PanelCorners& corners, Vec3 place, Vec3 outward);
 /// and in twist. So every rigid motion of the corners is one of the place, and every quadratic
 /// deflection of a plate is met on a straight edge.
 EdgeMotion edge_motion(const PanelCorners& corners, std::uint32_t edge, Vec3 place);
+
+/// How a place (m, wall frame, in the plane of the corners) follows the translations of the four
+/// corners, row by row as EdgeMotion, columns three by three: bilinear between them, turned as that
+/// surface turns in the mean: θ_x = ∂w/∂y, θ_y = -∂w/∂x, θ_z = (∂v/∂x - ∂u/∂y)/2. Edges stay
+/// straight; every uniform strain and twist of the corners is one of the places.
+EdgeMotion surface_motion(const PanelCorners& corners, Vec3 place);
 
 }  // namespace sunder

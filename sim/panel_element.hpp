@@ -8,30 +8,28 @@
 
 namespace sunder {
 
-/// A slab as an elastic element of a frame (FrameSolver::set_panel): what its four edges hang on
-/// must give them, force and moment at both corners of each, as the corners move. World axes.
+/// A slab or wall as an elastic element of a frame (FrameSolver::set_panels): what the four nodes
+/// at its corners must give it as they move. World axes; translations only, node by node, so that
+/// it twists nothing, and stands in the plane of its nodes. Weight, mass and contacts of the part
+/// stay on its carriers as without it.
 ///
-/// Edge k runs from corner k to corner k + 1 and follows them as a beam without loads between them
-/// would (edge_motion). So its two ends get the consistent end forces of what the panel's anchors
-/// put on it. The member along it passes them on through its own end joints, but moments at hinged
-/// ends: those go to what the hinge is on. Weight, mass and contacts of the slab stay on its
-/// carriers as without it. In a piece that flies `load` must be balanced in itself.
-///
-/// It takes part while every edge that bears anything has its joint with the slab and its member,
-/// held at both ends; what it stores is ½ qᵀ K q + loadᵀ q, q from `at_rest`.
+/// It takes part as long as every member along its edges is held at both ends and has its joint
+/// with the panel, and never again afterwards. It stores ½ qᵀ K q, q from `at_rest`.
 struct PanelElement {
+  std::uint32_t part = 0;
   std::array<std::uint32_t, 4> nodes{};  ///< of the frame: the corners, in order around
-  std::array<EdgeStiffness, 4> edges{};  ///< N/m, N, N m; their sum at the corners is symmetric
-  std::array<Twelve, 4> load{};          ///< of the edges, whatever the corners do, N, N m
-  PanelFreedoms at_rest{};               ///< corners' motion at which only `load` is there
+  Matrix12 stiffness{};                  ///< N/m, symmetric; rigid motions ask for nothing
+  Twelve at_rest{};                      ///< motion of the nodes at which it is without force, m
 };
 
-/// The element of a network whose frame `to_world` turns; `at_rest` is 0. With what weight and
-/// contacts ask of the edges as load if `loaded`. As ChunkNetwork::stiffness().
-PanelElement element_of(ChunkNetwork& network, const std::array<std::uint32_t, 4>& nodes,
-                        const Quaternion& to_world, bool loaded);
+/// Of an element that has cracked.
+struct PanelStiffness {
+  std::uint32_t part = 0;
+  Matrix12 stiffness{};
+};
 
-/// Stiffness about the four corners: the edges' sum without what rounding leaves unsymmetric.
-PanelMatrix stiffness_of(const PanelElement& element);
+/// What corners with these translations must put on a network that is held straight (PanelHold),
+/// whose frame `to_world` turns. As ChunkNetwork::stiffness().
+Matrix12 stiffness_of(ChunkNetwork& network, const Quaternion& to_world);
 
 }  // namespace sunder

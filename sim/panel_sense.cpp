@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sunder {
 namespace {
 
 /// Measured responses are right to rounding alone.
 constexpr double kRounding = 1 + 1e-6;
-constexpr std::size_t kLift = 2, kTurnX = 3, kTurnY = 4;
+constexpr std::array<double, 4> kAlternating{1, -1, 1, -1};
 
 double larger_way(ChunkNetwork& network, const PanelFreedoms& moved) {
   PanelFreedoms back = moved;
@@ -20,57 +19,61 @@ double larger_way(ChunkNetwork& network, const PanelFreedoms& moved) {
 
 }  // namespace
 
+/// Values at the corners are a + b x + c y + d (1, -1, 1, -1): d by what of the last is orthogonal
+/// to the others, b and c by least squares of the rest, which they meet exactly.
 PanelSense::PanelSense(ChunkNetwork& network, const PanelCorners& corners) {
   network.set_gravity({});
   network.set_contacts({});
   const Vec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  std::array<Vec2, 4> at{};
+  double xx = 0, xy = 0, yy = 0;
   for (std::size_t c = 0; c < 4; ++c) {
-    const Vec2 p = at_[c] = {corners[c].x - middle.x, corners[c].y - middle.y};
-    // Height of the surface w, θ_x = ∂w/∂y and θ_y = -∂w/∂x.
-    const std::array<std::array<double, 3>, kModes> of_corner{{{1, 0, 0},
-                                                               {p.x, 0, -1},
-                                                               {p.y, 1, 0},
-                                                               {p.x * p.x / 2, 0, -p.x},
-                                                               {p.y * p.y / 2, p.y, 0},
-                                                               {p.x * p.y, p.x, -p.y}}};
-    for (std::size_t m = 0; m < kModes; ++m)
-      for (std::size_t i = 0; i < 3; ++i) modes_[m][6 * c + kLift + i] = of_corner[m][i];
+    at[c] = {corners[c].x - middle.x, corners[c].y - middle.y};
+    xx += at[c].x * at[c].x, xy += at[c].x * at[c].y, yy += at[c].y * at[c].y;
   }
-  for (std::size_t m = 0; m < kModes; ++m) of_mode_[m] = larger_way(network, modes_[m]);
-  of_freedom_.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t c = 0; c < 4; ++c)
-    for (const std::size_t i : {kLift, kTurnX, kTurnY}) {
-      PanelFreedoms unit{};
-      unit[6 * c + i] = 1;
-      of_freedom_[6 * c + i] = larger_way(network, unit);
+  const double whole = xx * yy - xy * xy;
+  Vec2 fit;
+  for (std::size_t c = 0; c < 4; ++c) {
+    slope_[c] = {(yy * at[c].x - xy * at[c].y) / whole, (xx * at[c].y - xy * at[c].x) / whole};
+    fit = fit + kAlternating[c] * slope_[c];
+  }
+  double size = 0;
+  for (std::size_t c = 0; c < 4; ++c) {
+    alternating_[c] = kAlternating[c] - dot(fit, at[c]);
+    size += alternating_[c] * kAlternating[c];
+  }
+  for (double& value : alternating_) value /= size;
+  for (std::size_t m = 0; m < 6; ++m) {
+    PanelFreedoms strained{};
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (m == 0) strained[6 * c] = at[c].x;
+      if (m == 1) strained[6 * c + 1] = at[c].y;
+      if (m == 2) strained[6 * c] = at[c].y;
+      if (m >= 3) strained[6 * c + m - 3] = kAlternating[c];
     }
+    of_strain_[m] = larger_way(network, strained);
+  }
+}
+
+/// Stretch along x, along y, shear angle, and what alternates along x, y, z.
+std::array<double, 6> PanelSense::strains_of(const PanelFreedoms& moved) const {
+  std::array<double, 6> strain{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t c = 0; c < 4; ++c) strain[3 + i] += alternating_[c] * moved[6 * c + i];
+  for (std::size_t c = 0; c < 4; ++c) {
+    const double u = moved[6 * c] - strain[3] * kAlternating[c];
+    const double v = moved[6 * c + 1] - strain[4] * kAlternating[c];
+    strain[0] += slope_[c].x * u;
+    strain[1] += slope_[c].y * v;
+    strain[2] += slope_[c].y * u + slope_[c].x * v;
+  }
+  return strain;
 }
 
 double PanelSense::added(const PanelFreedoms& moved) const {
-  PanelFreedoms left = moved;
+  const std::array<double, 6> strain = strains_of(moved);
   double sum = 0;
-  const auto take = [&](std::size_t m, double share) {
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= share * modes_[m][i];
-    sum += std::abs(share) * of_mode_[m];
-  };
-  const double wide = at_[1].x + at_[2].x - at_[0].x - at_[3].x;
-  const double high = at_[2].y + at_[3].y - at_[0].y - at_[1].y;
-  const auto by_x = [&](std::size_t i) {
-    return (left[6 + i] + left[12 + i] - left[i] - left[18 + i]) / wide;
-  };
-  const auto by_y = [&](std::size_t i) {
-    return (left[12 + i] + left[18 + i] - left[i] - left[6 + i]) / high;
-  };
-  const double kx = -by_x(kTurnY), ky = by_y(kTurnX), kxy = (by_x(kTurnX) - by_y(kTurnY)) / 2;
-  take(3, kx);
-  take(4, ky);
-  take(5, kxy);
-  const double tilt_x = by_x(kLift), tilt_y = by_y(kLift);
-  take(1, tilt_x);
-  take(2, tilt_y);
-  take(0, (left[kLift] + left[6 + kLift] + left[12 + kLift] + left[18 + kLift]) / 4);
-  for (std::size_t i = 0; i < left.size(); ++i)
-    if (left[i] != 0) sum += std::abs(left[i]) * of_freedom_[i];
+  for (std::size_t m = 0; m < strain.size(); ++m) sum += std::abs(strain[m]) * of_strain_[m];
   return sum;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sunder {
 namespace {
@@ -12,9 +13,8 @@ constexpr double kNoForce = 1;  // N: contacts below it are over
 }  // namespace
 
 PanelStress::PanelStress(const WallAsset& asset, const Material& material, const PanelHold& hold,
-                         const PanelFreedoms& start, Vec3 gravity)
+                         Vec3 gravity)
     : network_(asset, material, hold),
-      start_(start),
       intact_(asset.bonds.size(), 1),
       present_(asset.chunks.size(), 1),
       give_(material.tensile_strength / material.youngs_modulus * asset.wall.thickness) {
@@ -62,13 +62,16 @@ void PanelStress::follow(const Island& island) {
   if (!gone.empty()) network_.remove_chunks(gone);
   std::erase_if(touches_, [&](const Touch& touch) { return present_[touch.chunk] == 0; });
   is_stale_ |= !broken.empty() || !gone.empty();
-  is_broken_ |= !broken.empty() || !gone.empty();
+  if (!broken.empty() || !gone.empty()) note_broken();
 }
 
-PanelFreedoms PanelStress::moved(const PanelFreedoms& corners) const {
-  PanelFreedoms result;
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = corners[i] - start_[i];
-  return result;
+void PanelStress::note_broken() {
+  is_broken_ = is_softer_ = true;
+}
+
+std::optional<Matrix12> PanelStress::softened(const Quaternion& to_world) {
+  if (!std::exchange(is_softer_, false)) return {};
+  return stiffness_of(network_, to_world);
 }
 
 bool PanelStress::is_stale(const PanelFreedoms& corners, double max_error) const {
@@ -86,9 +89,9 @@ std::vector<BrokenBond> PanelStress::settle(const PanelFreedoms& corners) {
     forces.push_back({touch.chunk, touch.point, touch.force});
   }
   network_.set_contacts(forces);
-  const std::vector<BrokenBond> broken = network_.cascade(moved(corners));
+  const std::vector<BrokenBond> broken = network_.cascade(corners);
   for (const BrokenBond& bond : broken) intact_[bond.bond] = 0;
-  is_broken_ |= !broken.empty();
+  if (!broken.empty()) note_broken();
   utilisation_ = network_.highest();
   last_ = corners;
   is_stale_ = false;

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "sim/chunk_network.hpp"
+#include "sim/panel_element.hpp"
 #include "sim/wall_state.hpp"
 
 namespace sunder {
@@ -14,9 +15,8 @@ namespace sunder {
 /// corners of the frame. What touches its chunks loads them by the mean force over the load time.
 class PanelStress {
  public:
-  /// `start`: where the corners were when it was put in, without stress.
   PanelStress(const WallAsset& asset, const Material& material, const PanelHold& hold,
-              const PanelFreedoms& start, Vec3 gravity);
+              Vec3 gravity);
 
   void touch(std::uint32_t chunk, Vec3 point, Vec3 impulse);  ///< wall frame, N s
   /// A step ends.
@@ -31,6 +31,8 @@ class PanelStress {
   const PanelFreedoms& settled() const { return last_; }  ///< corners at that time
   /// Nothing of it is broken, and what touches it is what did when it settled last.
   bool is_whole() const { return !is_stale_ && !is_broken_; }
+  /// If it has become softer since this was asked for last: its stiffness, axes as `to_world`.
+  std::optional<Matrix12> softened(const Quaternion& to_world);
 
  private:
   struct Touch {
@@ -40,16 +42,16 @@ class PanelStress {
     Vec3 force{}, point{};
     Vec3 settled{};  ///< the force at the last settle()
   };
-  PanelFreedoms moved(const PanelFreedoms& corners) const;
+  void note_broken();
 
   ChunkNetwork network_;
-  PanelFreedoms start_, last_{};
+  PanelFreedoms last_{};
   std::vector<std::uint8_t> intact_;   ///< by bond
   std::vector<std::uint8_t> present_;  ///< by chunk
   std::vector<Touch> touches_;         ///< by chunk, ascending
   double give_ = 0;                    ///< displacement that a bond at its strength has, m
   bool is_stale_ = true;
-  bool is_broken_ = false;
+  bool is_broken_ = false, is_softer_ = false;
   double utilisation_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "fracture/recover.hpp"
 #include "meshing/error.hpp"
@@ -139,28 +140,27 @@ void Panels::place_corners(Panel& panel) const {
   const auto& nodes = is_slab ? frame.slabs[panel.part - frame.slab_part(0)].nodes
                               : frame.walls[panel.part - frame.wall_part(0)].nodes;
   const Pose to_wall = inverse(standing_of(panel));
+  panel.to_wall = to_wall.rotation;
   const Box box = bounding_box(host_.solids[panel.part].outline.outline);
   const Vec2 middle = 0.5 * (box.high - box.low);
   for (const std::uint32_t node : nodes) {
-    const Vec3 p = to_wall * frame.nodes[node].position;
+    Vec3 p = to_wall * frame.nodes[node].position;
+    p.z = 0;  // without the arm to the beams' axes: its forces would twist them
     const std::size_t corner = p.y < middle.y ? (p.x < middle.x ? 0 : 1) : (p.x < middle.x ? 3 : 2);
     panel.nodes[corner] = node;
     panel.hold.corners[corner] = p;
   }
   panel.hold.hinged = {true, true, true, true};
+  panel.hold.is_straight = true;
 }
 
-/// Of a slab, out of its plane alone: in it the frame gives way, since it does not know how stiff
-/// its slabs are, and they would be strained as they never are. Walls stand in their bays with
-/// room.
+/// From where they were at time 0.
 PanelFreedoms Panels::corners_of(const Panel& panel) const {
-  if (panel.part >= scene_.frame.wall_part(0)) return {};
-  const Quaternion back = conjugate(standing_of(panel).rotation);
-  PanelFreedoms result;
+  const Twelve moved = host_.motion.panel_motion(panel.part).value_or(Twelve{});
+  PanelFreedoms result{};
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 u = rotate(back, host_.motion.displacement(panel.nodes[i]));
-    const Vec3 r = rotate(back, host_.motion.rotation(panel.nodes[i]));
-    std::ranges::copy(std::array{0.0, 0.0, u.z, r.x, r.y, 0.0}, result.begin() + 6 * i);
+    const Vec3 u = rotate(panel.to_wall, {moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]});
+    std::ranges::copy(std::array{u.x, u.y, u.z}, result.begin() + 6 * i);
   }
   return result;
 }
@@ -170,11 +170,19 @@ Vec3 Panels::gravity_in(const Pose& pose) const {
 }
 
 void Panels::start() {
+  // With `diaphragms` slabs have a stiffness in their plane already.
+  const std::uint32_t first = scene_.simulation.diaphragms ? scene_.frame.wall_part(0) : 0;
+  std::vector<PanelElement> elements;
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
-    panel.start = panel.seen = corners_of(panel);
-    if (has_strengths(material_of(panel))) panel.used = shape_of(w).at_rest;
+    if (!has_strengths(material_of(panel))) continue;
+    Shape& shape = shape_of(w);
+    panel.used = shape.at_rest;
+    if (!shape.network || panel.part < first) continue;
+    elements.push_back(
+        {panel.part, panel.nodes, stiffness_of(*shape.network, standing_of(panel).rotation), {}});
   }
+  host_.motion.set_panels(std::move(elements));
 }
 
 /// So that a facade does not show one and the same pattern everywhere.
@@ -326,8 +334,7 @@ void Panels::make_stress(std::uint32_t w) {
   const WallAsset& asset = made(w).asset;
   if (std::holds_alternative<SpiderwebParams>(asset.wall.pattern)) return;
   if (panel.stands && walls_.standing(w).chunks.size() != asset.chunks.size()) return;
-  panel.stress.emplace(asset, panel.made->material, panel.hold, panel.start,
-                       gravity_in(standing_of(panel)));
+  panel.stress.emplace(asset, panel.made->material, panel.hold, gravity_in(standing_of(panel)));
 }
 
 std::uint32_t Panels::present(std::uint32_t w) const {
@@ -436,15 +443,13 @@ bool Panels::may_crack(std::uint32_t w) {
   if (!shape.network) return false;
   const PanelFreedoms corners = corners_of(panel);
   if (panel.used + added_use(panel, corners, panel.seen) <= 1) return false;
-  PanelFreedoms moved = corners;
-  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= panel.start[i];
   panel.seen = corners;
-  panel.used = shape.network->highest(moved);
+  panel.used = shape.network->highest(corners);
   ++solves_;
   return panel.used > 1;
 }
 
-void Panels::crack() {
+bool Panels::crack() {
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
     if (!host_.motion.stands(panel.part)) continue;
@@ -452,18 +457,32 @@ void Panels::crack() {
       make_stress(w);
     if (!panel.stress) continue;
     if (panel.stands) panel.stress->follow(walls_.standing(w));
-    const PanelFreedoms corners = corners_of(panel);
-    if (!panel.stress->is_stale(corners, impact_.simulation.max_error) ||
-        (panel.stress->is_whole() &&
-         panel.stress->utilisation() + added_use(panel, corners, panel.stress->settled()) <= 1)) {
-      ++solves_skipped_;
-      continue;
-    }
-    ++solves_;
-    const std::vector<BrokenBond> broken = panel.stress->settle(corners);
-    if (!broken.empty() && !panel.stands) stand_up(w);
-    if (!broken.empty() && panel.stress) break_bonds(w, broken);
+    settle(w);
+    if (!panel.stress || !host_.motion.panel_motion(panel.part)) continue;
+    if (const auto now = panel.stress->softened(standing_of(panel).rotation))
+      softer_.push_back({panel.part, *now});
   }
+  if (softer_.empty()) return false;
+  host_.motion.change_panels(softer_);
+  softer_.clear();
+  return true;
+}
+
+/// Where anything has changed that could crack it.
+void Panels::settle(std::uint32_t w) {
+  Panel& panel = panels_[w];
+  const PanelFreedoms corners = corners_of(panel);
+  // What is whole is judged by the bound alone, as what is not meshed yet.
+  PanelStress& stress = *panel.stress;
+  if (stress.is_whole() ? stress.utilisation() + added_use(panel, corners, stress.settled()) <= 1
+                        : !stress.is_stale(corners, impact_.simulation.max_error)) {
+    ++solves_skipped_;
+    return;
+  }
+  ++solves_;
+  const std::vector<BrokenBond> broken = stress.settle(corners);
+  if (!broken.empty() && !panel.stands) stand_up(w);
+  if (!broken.empty() && panel.stress) break_bonds(w, broken);
 }
 
 void Panels::break_bonds(std::uint32_t w, std::span<const BrokenBond> broken) {
@@ -479,8 +498,13 @@ void Panels::after_step(double now, double dt) {
 }
 
 void Panels::follow_frame() {
+  const std::size_t broken = host_.broken_joints();
+  const bool any_broken = std::exchange(joints_followed_, broken) != broken;
   for (std::uint32_t w = 0; w < panels_.size(); ++w) {
     Panel& panel = panels_[w];
+    if (any_broken && walls_.is_waiting(w) && has_lost_joint(panel) &&
+        host_.motion.stands(panel.part))
+      stand_up(w);  // its chunks there hang on nothing
     if (!panel.stands) continue;
     if (host_.motion.stands(panel.part)) {
       cut_anchors(w);
@@ -491,6 +515,10 @@ void Panels::follow_frame() {
     }
     if (!host_.motion.stands(panel.part) || panel.present == 0) come_loose(w, kNoBody);
   }
+}
+
+bool Panels::has_lost_joint(const Panel& panel) const {
+  return !std::ranges::all_of(panel.joints, host_.is_intact);
 }
 
 /// Of the panel's bounding box: 0 bottom, 1 right, 2 top, 3 left.

@@ -31,6 +31,7 @@ class Panels {
     /// Breaks what joints a part still has, so that it is a body of its own.
     std::function<void(std::uint32_t part)> break_off;
     std::function<bool(std::uint32_t joint)> is_intact;
+    std::function<std::size_t()> broken_joints;  ///< how many so far
     /// The track of a part that leaves the frame.
     std::function<std::uint32_t(std::uint32_t part)> track_of;
   };
@@ -42,7 +43,7 @@ class Panels {
   void follow_shot(std::uint32_t shot, BodyId body, std::uint32_t track) {
     walls_.follow_shot(shot, body, track);
   }
-  /// Time 0: without stress but that of their weight.
+  /// Time 0: from now on they are elastic, without stress but that of their weight.
   void start();
   // A substep: prepare, next_arrival, the world's step, after_step, arrive.
   /// The longest substep in which nothing passes through a panel.
@@ -53,7 +54,8 @@ class Panels {
   /// After the frame has changed: what hangs on nothing any more goes, what is left loads it.
   void follow_frame();
   /// Panels crack where their own weight, what lies on them and the frame's motion ask too much.
-  void crack();
+  /// Whether one has become softer: the frame knows.
+  bool crack();
 
   void record() { walls_.record_islands(); }
   /// Whether a part is a wall of chunks now, which takes note of its hits itself.
@@ -79,7 +81,7 @@ class Panels {
     std::uint32_t present = 0;             ///< chunks that stood when the frame was last told
     std::array<std::uint32_t, 4> nodes{};  ///< of the frame, in the order of PanelCorners
     PanelHold hold{};
-    PanelFreedoms start{};                   ///< corners at time 0, wall frame
+    Quaternion to_wall{};                    ///< from the world
     std::optional<ImpactWall> made{};        ///< its chunks, once they were needed
     std::uint32_t shape = kNoPart;           ///< of shapes_; kNoPart: not yet known
     PanelFreedoms seen{};                    ///< corners for which `used` is known
@@ -121,7 +123,9 @@ class Panels {
   double added_use(const Panel& panel, const PanelFreedoms& corners,
                    const PanelFreedoms& before) const;
   bool may_crack(std::uint32_t w);
+  void settle(std::uint32_t w);
   void break_bonds(std::uint32_t w, std::span<const BrokenBond> broken);
+  bool has_lost_joint(const Panel& panel) const;
   std::size_t side_near(const Panel& panel, Vec2 point) const;
   void cut_anchors(std::uint32_t w);
   void come_loose(std::uint32_t w, BodyId struck, std::uint32_t prism = 0);
@@ -137,6 +141,8 @@ class Panels {
   std::vector<Panel> panels_;  ///< by wall
   std::vector<Shape> shapes_;
   std::uint64_t solves_ = 0, solves_skipped_ = 0;
+  std::vector<PanelStiffness> softer_;        ///< that the frame does not know yet
+  std::size_t joints_followed_ = 0;           ///< broken ones that follow_frame() knows of
   double shift_ = 0;                          ///< of the baseline, J
   bool any_awake_ = false;                    ///< something was near a panel
   std::vector<std::uint32_t> panel_of_part_;  ///< kNoPart: it does not break

@@ -7,26 +7,30 @@
 #include "meshing/error.hpp"
 
 namespace sunder {
-namespace {
+StandingFrame::StandingFrame(const CollapseScene& scene) : scene_(scene), frame_(scene.frame) {}
 
-FrameSolverParams static_params(const CollapseScene& scene) {
+FrameSolverParams StandingFrame::static_params() const {
   FrameSolverParams params;
-  params.p_delta = scene.simulation.p_delta;
-  params.slabs = scene.simulation.diaphragms ? "diaphragm" : "load";
+  params.p_delta = scene_.simulation.p_delta;
+  params.slabs = scene_.simulation.diaphragms ? "diaphragm" : "load";
+  if (has_panels_)
+    for (const Panel& panel : panels_) params.panels.push_back(panel.element);
   return params;
 }
 
-}  // namespace
-
-StandingFrame::StandingFrame(const CollapseScene& scene) : scene_(scene), frame_(scene.frame) {}
-
 /// What the trapezoidal rule factors: K + (2/dt) C + (4/dt²) M with C = α M + β K.
-FrameSolverParams StandingFrame::dynamic_params() const {
-  FrameSolverParams params = static_params(scene_);
-  params.p_delta = false;
+StandingFrame::Factored StandingFrame::factored_in_time() const {
   const double dt = scene_.simulation.step;
-  params.stiffness = 1 + 2 / dt * scene_.simulation.damping_stiffness;
-  params.mass = 4 / (dt * dt) + 2 / dt * scene_.simulation.damping_mass;
+  return {1 + 2 / dt * scene_.simulation.damping_stiffness,
+          4 / (dt * dt) + 2 / dt * scene_.simulation.damping_mass};
+}
+
+FrameSolverParams StandingFrame::dynamic_params() const {
+  FrameSolverParams params = static_params();
+  params.p_delta = false;
+  const Factored factored = factored_in_time();
+  params.stiffness = factored.stiffness;
+  params.mass = factored.mass;
   return params;
 }
 
@@ -35,14 +39,18 @@ StandingFrame::~StandingFrame() {
 }
 
 void StandingFrame::settle(const Progress& progress) {
-  FrameSolverParams params = static_params(scene_);
+  FrameSolverParams params = static_params();
   const double share =
       scene_.simulation.settle / (scene_.simulation.settle + scene_.simulation.duration);
   if (progress) params.progress = [progress, share](double done) { progress(share * done); };
   static_.frame = std::make_unique<FrameSolver>(frame_, params);
   solve_static();
   is_settled_ = true;
-  if (!may_ring()) return;
+  if (may_ring() && frame_.patterns.empty()) begin_dynamic();
+}
+
+/// In a thread of its own.
+void StandingFrame::begin_dynamic() {
   FrameSolverParams ringing = dynamic_params();
   ringing.progress = [&stops = stops_](double) {
     if (stops) throw Error(ErrorCode::input, "the factor is not needed any more");
@@ -50,6 +58,45 @@ void StandingFrame::settle(const Progress& progress) {
   ahead_ = std::async(std::launch::async, [this, ringing, &like = *static_.frame] {
     return std::make_unique<FrameSolver>(frame_, ringing, like);
   });
+}
+
+void StandingFrame::set_panels(std::vector<PanelElement> elements) {
+  std::ranges::sort(elements, {}, &PanelElement::part);
+  for (PanelElement& element : elements) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const Vec3 u = static_.frame->displacement(element.nodes[corner]);
+      element.at_rest[3 * corner] = u.x;
+      element.at_rest[3 * corner + 1] = u.y;
+      element.at_rest[3 * corner + 2] = u.z;
+    }
+    panels_.push_back({element});
+  }
+  if (!may_ring()) return;
+  take_in_panels();
+  begin_dynamic();
+}
+
+std::optional<Twelve> StandingFrame::panel_motion(std::uint32_t part) const {
+  if (has_panels_) return in_use().panel_motion(part);
+  const auto number = [](const Panel& panel) { return panel.element.part; };
+  if (std::ranges::binary_search(panels_, part, {}, number)) return Twelve{};
+  return {};
+}
+
+/// A solver that has room for the panels takes the place of the one that found the state at rest.
+void StandingFrame::take_in_panels() {
+  if (has_panels_ || panels_.empty()) return;
+  has_panels_ = true;
+  const std::vector<double> u(static_.frame->displacements().begin(),
+                              static_.frame->displacements().end());
+  static_ = {std::make_unique<FrameSolver>(frame_, static_params())};
+  bring_up_to_date(static_);
+  const FrameLoads weight{.gravity = {0, -scene_.simulation.gravity, 0}};
+  if (scene_.simulation.p_delta) {
+    static_.frame->solve(weight);
+  } else {
+    static_.frame->set_displacements(u, weight);
+  }
 }
 
 /// Later than at time 0: when parts are removed joints pass to others, and it is needed at once.
@@ -123,6 +170,14 @@ void StandingFrame::bring_up_to_date(Solver& solver) const {
   if (solver.parts < parts.size()) solver.frame->remove_parts(parts.subspan(solver.parts));
   for (std::size_t i = solver.masses; i < masses_.size(); ++i)
     solver.frame->set_plate_mass(masses_[i].first, masses_[i].second);
+  std::vector<PanelElement> elements;
+  solver.panels.resize(has_panels_ ? panels_.size() : 0);
+  for (std::size_t i = 0; i < solver.panels.size(); ++i) {
+    if (solver.panels[i] == panels_[i].set) continue;
+    solver.panels[i] = panels_[i].set;
+    elements.push_back(panels_[i].element);
+  }
+  solver.frame->set_panels(elements);
   solver.masses = masses_.size();
   solver.joints = joints.size();
   solver.parts = parts.size();
@@ -147,7 +202,7 @@ void StandingFrame::solve_static() {
 void StandingFrame::solve_anew() {
   const std::vector<Hinge> hinges = has_rung_ ? hinges_ : static_.frame->hinges();
   if (ahead_.valid()) ahead_.wait();
-  FrameSolverParams params = static_params(scene_);
+  FrameSolverParams params = static_params();
   const auto solve = [&] {
     static_ = {std::make_unique<FrameSolver>(frame_, params, *static_.frame)};
     bring_up_to_date(static_);
@@ -174,6 +229,7 @@ void StandingFrame::balance() {
 void StandingFrame::make_dynamic() {
   if (ahead_.valid()) {
     dynamic_ = {ahead_.get()};
+    dynamic_.panels.assign(panels_.size(), 1);
   } else {
     dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(), *static_.frame)};
   }
@@ -197,6 +253,16 @@ void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
   if (in_time()) bring_up_to_date(dynamic_);
 }
 
+void StandingFrame::change_panels(std::span<const PanelStiffness> changed) {
+  for (const PanelStiffness& each : changed) {
+    const auto panel = std::ranges::lower_bound(panels_, each.part, {},
+                                                [](const Panel& p) { return p.element.part; });
+    panel->element.stiffness = each.stiffness;
+    ++panel->set;
+  }
+  if (in_time()) bring_up_to_date(dynamic_);
+}
+
 void StandingFrame::carry_on() {
   if (in_time()) {
     stand_on();
@@ -214,7 +280,8 @@ void StandingFrame::rejoin() {
   const std::vector<double> u = u_, v = v_;
   const bool rang = in_time();
   rings_ = has_rung_ = false;
-  FrameSolverParams params = static_params(scene_);
+  has_panels_ = !panels_.empty();
+  FrameSolverParams params = static_params();
   params.p_delta &= !is_first_order_;
   static_ = {std::make_unique<FrameSolver>(frame_, params)};
   bring_up_to_date(static_);

@@ -30,6 +30,9 @@ class StandingFrame {
   /// own, and waited for when it is needed first.
   void settle(const Progress& progress);
   std::vector<SupportReaction> supports() const;
+  /// Slabs and walls that are elastic from now on, without force as the frame is at rest now
+  /// (their `at_rest` is set). They cost nothing before the frame is woken first.
+  void set_panels(std::vector<PanelElement> elements);
 
   // Loads, for the next step or carry_on().
   void set_time(double now) { now_ = now; }
@@ -55,6 +58,8 @@ class StandingFrame {
   // Changes of what there is: joints break, parts leave with all their joints. Then carry_on().
   void take_out(std::span<const std::uint32_t> joints, std::span<const std::uint32_t> parts);
   void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
+  /// Other stiffnesses of some that were set. Then carry_on().
+  void change_panels(std::span<const PanelStiffness> changed);
   void stop_turning(std::uint32_t node);
   void carry_on();  ///< in time displacements are continuous, else there is a new balance
   void stand_on();  ///< in time: forces follow the displacements and contacts anew
@@ -64,6 +69,7 @@ class StandingFrame {
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
+  bool bends() const { return !hinges_.empty(); }
   bool can_bend(std::uint32_t joint) const { return in_use().can_bend(joint); }
   void set_hinges(const std::vector<Hinge>& hinges);
 
@@ -71,7 +77,8 @@ class StandingFrame {
   bool is_live() const { return is_live_; }  ///< loads have changed since forget_changes()
   void forget_changes() { is_live_ = can_step_again_ = false; }
   Vec3 displacement(std::uint32_t node) const { return in_use().displacement(node); }
-  Vec3 rotation(std::uint32_t node) const { return in_use().rotation(node); }
+  /// Of an elastic panel's corners from where it is without force, m; none: it is none (any more).
+  std::optional<Twelve> panel_motion(std::uint32_t part) const;
   /// Velocity and angular velocity of a node; in time.
   struct Motion {
     Vec3 velocity, spin;
@@ -94,6 +101,11 @@ class StandingFrame {
   struct Solver {
     std::unique_ptr<FrameSolver> frame;
     std::size_t joints = 0, parts = 0, masses = 0;
+    std::vector<std::uint32_t> panels = {};  ///< how often each was set; empty: never
+  };
+  struct Panel {
+    PanelElement element;
+    std::uint32_t set = 1;  ///< how often
   };
   /// Before a step that may have to be done again.
   struct Moment {
@@ -113,8 +125,15 @@ class StandingFrame {
   void solve_static();
   void solve_anew();
   void balance();
+  FrameSolverParams static_params() const;
+  struct Factored {
+    double stiffness = 1, mass = 0;  ///< so much of K and of M
+  };
+  Factored factored_in_time() const;
   FrameSolverParams dynamic_params() const;
   bool may_ring() const;
+  void begin_dynamic();
+  void take_in_panels();
   void make_dynamic();
   void move_on();
   void find_momentum() const;
@@ -133,6 +152,8 @@ class StandingFrame {
   std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
   std::vector<std::uint32_t> broken_, gone_;         ///< all that was taken out
   std::vector<std::pair<std::uint32_t, double>> masses_;  ///< of plates, as they changed
+  std::vector<Panel> panels_;                             ///< by part
+  bool has_panels_ = false;                               ///< the solvers know of them
   std::vector<FrameLoads::OnPart> contacts_;
   // When it rings; in a step its way, the loads at its end, and what was when it began.
   std::vector<double> u_, v_, f_, way_, f_next_, v_before_, momentum_before_, springs_, right_,

@@ -23,6 +23,7 @@ double product_of(const std::vector<double>& a, const std::vector<double>& b) {
 
 void StandingFrame::wake() {
   quiet_for_ = 0;
+  take_in_panels();
   const bool rang = std::exchange(rings_, true);
   if (rang || scene_.simulation.quasi_static) return;
   if (!dynamic_.frame) make_dynamic();
@@ -131,7 +132,7 @@ void StandingFrame::account_for_damping() {
 void StandingFrame::note_residual(const std::vector<double>& mass_way,
                                   const std::vector<double>& spring_way) {
   if (gone_.size() == frame_.part_count()) return;
-  const FrameSolverParams params = dynamic_params();
+  const Factored params = factored_in_time();
   double load = 0, rest = 0;
   for (std::size_t i = 0; i < right_.size(); ++i) {
     load = std::max({load, std::fabs(f_[i]), std::fabs(right_[i])});

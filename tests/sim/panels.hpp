@@ -46,6 +46,13 @@ inline PanelHold panel_hold(Vec2 size, bool hinged = false) {
           {hinged, hinged, hinged, hinged}};
 }
 
+/// As a panel of a building hangs: hinged, its edges straight.
+inline PanelHold straight_hold(Vec2 size) {
+  PanelHold hold = panel_hold(size, true);
+  hold.is_straight = true;
+  return hold;
+}
+
 /// Corners moved as a rigid body about the origin.
 inline PanelFreedoms rigid_freedoms(const PanelHold& hold, Vec3 move, Vec3 turn) {
   PanelFreedoms g{};
@@ -131,6 +138,24 @@ class DensePanel {
     r[5] = {{p + v, in * dv}, {q + v, -in * dv}, {p + 5, dt0}, {q + 5, dt1}};
     return r;
   }
+  /// Of a rectangle that follows the translations of its corners, bilinear; turned by the mean.
+  Rows surface_rows(const PanelHold& hold, Vec3 at) const {
+    const Vec3 low = hold.corners[0], size = hold.corners[2] - low;
+    const double x = (at.x - low.x) / size.x, y = (at.y - low.y) / size.y;
+    const double value[4] = {(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y};
+    const double dx[4] = {(y - 1) / size.x, (1 - y) / size.x, y / size.x, -y / size.x};
+    const double dy[4] = {(x - 1) / size.y, -x / size.y, x / size.y, (1 - x) / size.y};
+    Rows r(6);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const std::size_t first = 6 * chunks_ + 6 * c;
+      for (std::size_t i = 0; i < 3; ++i) r[i].emplace_back(first + i, value[c]);
+      r[3].emplace_back(first + 2, dy[c]);
+      r[4].emplace_back(first + 2, -dx[c]);
+      r[5].emplace_back(first + 1, dx[c] / 2);
+      r[5].emplace_back(first, -dy[c] / 2);
+    }
+    return r;
+  }
   void add_spring(const Rows& a, const Rows& b, bool is_turn, Vec3 direction, double stiffness) {
     Row stretch;
     const double d[3] = {direction.x, direction.y, direction.z};
@@ -163,7 +188,9 @@ class DensePanel {
         1 / (h / (5.0 / 12 * e * bond.area) + h * h * h / ((hinge ? 3 : 12) * plate));
     const Vec3 m = hinge ? site_b : 0.5 * (site_a + site_b);
     const Rows a = chunk_rows(bond.a);
-    const Rows b = is_anchor ? edge_rows(hold, edge, site_b) : chunk_rows(bond.b);
+    const Rows b = !is_anchor         ? chunk_rows(bond.b)
+                   : hold.is_straight ? surface_rows(hold, site_b)
+                                      : edge_rows(hold, edge, site_b);
     const Rows a_c = carried(a, centre_a, c), b_c = carried(b, centre_b, c);
     add_spring(a_c, b_c, false, n, e * bond.area / h);
     add_spring(a_c, b_c, false, along, e * bond.area / h);

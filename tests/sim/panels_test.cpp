@@ -8,6 +8,7 @@
 
 #include "fracture/recover.hpp"
 #include "meshing/error.hpp"
+#include "meshing/random.hpp"
 #include "sim/frames.hpp"
 #include "sim/recorder.hpp"
 #include "sim/rigid_world.hpp"
@@ -128,6 +129,24 @@ CollapseScene post_removed(const Breakable& kind = {}) {
   return scene;
 }
 
+void make_joints_endless(CollapseScene& scene) {
+  for (FrameJoint& joint : scene.frame.joints) {
+    joint.strength.force = 1e6 * joint.strength.force;
+    joint.strength.torque = 1e6 * joint.strength.torque;
+  }
+}
+
+/// The ground pushes along x for a while, to both ways with `swings`.
+GroundMotion shake(double acceleration, double swings = 0) {
+  GroundMotion motion;
+  for (int i = 0; i <= 40; ++i) {
+    const double t = 0.0125 * i, way = swings > 0 ? std::sin(6.2832 * swings * t) : 1;
+    motion.times.push_back(t);
+    motion.accelerations.push_back({i == 0 || i == 40 ? 0 : acceleration * way, 0, 0});
+  }
+  return motion;
+}
+
 /// What went in, from outside or by falling, J.
 double put_in(const CollapseResult& r) {
   return std::abs(r.energy_in) + std::max(0.0, -r.energy.potential);
@@ -214,8 +233,7 @@ CollapseScene one_wall_scene() {
 
 /// The last one's debris meets the walls behind.
 TEST(Panels, SkippingChangesNoBreak) {
-  for (const CollapseScene& scene :
-       {one_wall_scene(), shot_through_slab(), shot_through_wall()}) {
+  for (const CollapseScene& scene : {one_wall_scene(), shot_through_slab(), shot_through_wall()}) {
     const CollapseResult some = simulate_collapse(scene);
     const CollapseResult all = simulate_collapse(scene, {.skip = false});
     EXPECT_EQ(joints_broken(scene, some), joints_broken(scene, all));
@@ -462,6 +480,131 @@ TEST(Panels, RisingLoadAndShakenGroundRun) {
   const CollapseResult r = simulate_collapse(shaken);
   EXPECT_LE(r.momentum_error, 1e-12);
   EXPECT_LE(std::abs(r.energy.numerical), 1e-6 * put_in(r));
+}
+
+/// Cells of a wall in front whose sites are `sites`, or their mirror image.
+WallAsset given_sites(const CollapseScene& scene, std::vector<Vec2> sites, bool mirrored) {
+  const PartSolid solid = solid_of(scene.frame, part_named(scene.frame, "wall_x_0_1_0"));
+  Wall wall;
+  wall.region = solid.outline;
+  wall.thickness = 2 * solid.half_length;
+  wall.material = "masonry";
+  wall.anchors = {"bottom", "left", "right", "top"};
+  const Box box = bounding_box(solid.outline.outline);
+  const Vec2 size = box.high - box.low;
+  for (Vec2& site : sites)
+    site = box.low + Vec2{size.x * (mirrored ? 1 - site.x : site.x), size.y * site.y};
+  wall.pattern = VoronoiSitesParams{.sites = sites};
+  return at_file_precision(fracture_wall(wall, 1850, {.seed = 1}));
+}
+
+CollapseScene racked_portal(double acceleration, const std::vector<Vec2>& sites, bool mirrored) {
+  CollapseScene scene = breakable_scene({.slab = {}});
+  for (FrameWall& wall : scene.frame.walls)
+    if (wall.name != "wall_x_0_1_0") wall.pattern = kNoPart;
+  make_joints_endless(scene);
+  scene.frame.patterns[0].asset = "wall.glb";
+  scene.assets[0] = given_sites(scene, sites, mirrored);
+  scene.scenario.ground_motion = shake(acceleration);
+  return scene;
+}
+
+/// How many bonds cracked at a time, until the first chunk came off.
+std::vector<std::uint32_t> first_cracks(const CollapseResult& r) {
+  std::vector<std::uint32_t> bonds;
+  for (const BreakEvent& event : r.recording.events) {
+    bonds.push_back(event.bonds_broken);
+    if (event.chunks_freed > 0) break;
+  }
+  return bonds;
+}
+
+TEST(Panels, AMirroredQuakeCracksTheMirroredWallAlike) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    std::vector<Vec2> sites;
+    for (std::uint64_t i = 0; i < 60; ++i)
+      sites.push_back({random_unit(seed, 2 * i), random_unit(seed, 2 * i + 1)});
+    const CollapseResult one = simulate_collapse(racked_portal(25, sites, false));
+    const CollapseResult two = simulate_collapse(racked_portal(-25, sites, true));
+    EXPECT_GT(one.broken_bonds, 5u) << seed;
+    EXPECT_EQ(first_cracks(one), first_cracks(two)) << seed;
+    EXPECT_GT(one.energy.fracture, 0) << seed;
+    expect_books_close(one, "racked " + std::to_string(seed));
+  }
+}
+
+TEST(Panels, WallsOfAShakenBuildingCrackAndTheBooksClose) {
+  CollapseScene scene = breakable_scene({.posts = 3, .storeys = 2, .slab = {}});
+  make_joints_endless(scene);
+  scene.scenario.ground_motion = shake(20, 3);
+  const CollapseResult r = simulate_collapse(scene);
+  EXPECT_GT(r.panels_broken, 0u);
+  EXPECT_GT(r.energy.fracture, 0) << "what the cracked parts had stored";
+  expect_books_close(r, "shaken");
+  const CollapseResult all = simulate_collapse(scene, {.skip = false});
+  EXPECT_EQ(r.broken_bonds, all.broken_bonds);
+  EXPECT_EQ(r.crack_area, all.crack_area);
+}
+
+// Racking is what walls resist: the frame gives way less, and gets less work done on it.
+TEST(Panels, WallsHoldAFrameThatWouldSway) {
+  double work[2] = {};
+  for (const bool elastic : {false, true}) {
+    CollapseScene scene = breakable_scene({.slab = {}});
+    if (!elastic)
+      for (FrameWall& wall : scene.frame.walls) wall.pattern = kNoPart;
+    for (Material& m : scene.frame.materials) {
+      m.tensile_strength *= 1e4;
+      m.compressive_strength *= 1e4;
+    }
+    scene.rules.breaking = false;
+    scene.simulation.quasi_static = true;
+    scene.scenario.ground_motion = shake(5);
+    scene.simulation.duration = 0.4;
+    const CollapseResult r = simulate_collapse(scene);
+    work[elastic] = r.energy.strain;
+    EXPECT_EQ(r.broken_bonds, 0u);
+  }
+  EXPECT_LT(work[1], 0.4 * work[0]);  // 0.29
+}
+
+// A material without strengths has no network, and is the load alone that it is.
+TEST(Panels, ABuildingThatLosesAPostKeepsMoreOfItsJoints) {
+  CollapseScene scene = breakable_scene({.posts = 3, .storeys = 2});
+  for (Material& m : scene.frame.materials) m.tensile_strength *= 5;  // bars
+  scene.scenario.remove = {"post_1_1_0"};
+  scene.simulation.duration = 0.6;
+  CollapseScene load = scene;
+  for (Material& m : load.frame.materials) m.tensile_strength = 0;
+  const CollapseResult elastic = simulate_collapse(scene), bare = simulate_collapse(load);
+  EXPECT_LE(std::abs(elastic.energy.numerical), 1e-6 * std::abs(elastic.energy.strain));
+  EXPECT_LT(2 * elastic.broken_joints.size(), bare.broken_joints.size());
+}
+
+// Alone, at once, in second order, with bars in the slabs: the same state until something cracks.
+TEST(Panels, WhateverTheOptionsNothingChangesBeforeSomethingHappens) {
+  for (int options = 0; options < 8; ++options) {
+    CollapseScene scene = breakable_scene({.storeys = 2});
+    scene.simulation.quasi_static = (options & 1) != 0;
+    scene.simulation.p_delta = (options & 2) != 0;
+    scene.simulation.diaphragms = (options & 4) != 0;
+    scene.simulation.duration = 0.2;
+    EXPECT_EQ(simulate_collapse(scene).panels_broken, 0u) << options;
+    // A push of next to nothing wakes the frame: it rings about the same state, or about that of
+    // first order.
+    scene.scenario.ground_motion = {{0, 0.1, 0.2}, {{}, {1e-6, 0, 0}, {}}};
+    const CollapseResult pushed = simulate_collapse(scene);
+    EXPECT_EQ(pushed.panels_broken, 0u) << options;
+    EXPECT_TRUE(pushed.broken_joints.empty()) << options;
+    const bool same_order = options == 0 || scene.simulation.quasi_static;
+    EXPECT_NEAR(pushed.max_utilisation, pushed.utilisation_at_rest, same_order ? 1e-6 : 1e-3)
+        << options;
+    // And a strong one cracks something.
+    scene.scenario.ground_motion = shake(35);
+    const CollapseResult shaken = simulate_collapse(scene);
+    EXPECT_GT(shaken.panels_broken, 0u) << options;
+    expect_books_close(shaken, std::to_string(options));
+  }
 }
 
 TEST(Panels, BallThatStartsInsideAPanelIsRefused) {
