@@ -63,7 +63,10 @@ export function chartsOf(model) {
       lines: [{ label: "utilisation", times: run.times, values: run.max_utilisation }],
     });
   else missing.push("utilisation");
-  const energies = kEnergies.filter((key) => hasValues(run?.[key]));
+  // Rounding is not worth a line of its own.
+  const largest = (key) => Math.max(...(run?.[key] ?? [0]).map(Math.abs));
+  const least = 1e-6 * Math.max(...kEnergies.map(largest));
+  const energies = kEnergies.filter((key) => largest(key) > least);
   if (energies.length > 0)
     charts.push({
       title: "Energy",
