@@ -53,7 +53,7 @@ class FrameWorld {
   /// Where a point of a part is that stood at `stood`, world.
   virtual Vec3 place(std::uint32_t part, Vec3 stood) const = 0;
   virtual PartReaction reaction(std::uint32_t joint) const = 0;  ///< in the last step
-  virtual double gap(std::uint32_t joint) const = 0;         ///< between the two sides, m
+  virtual double gap(std::uint32_t joint) const = 0;             ///< between the two sides, m
   virtual std::uint64_t fallbacks() const = 0;  ///< steps in which a direct solver gave up
 };
 

@@ -209,7 +209,8 @@ void print(Job& job) {
 std::string json_of(const std::vector<Job>& jobs) {
   std::string out = text(
       "{\n  \"commit\": \"%s\",\n  \"machine\": \"%s\",\n  \"date\": \"%s\",\n  \"made_by\": "
-      "\"./dev bench front\",\n  \"jobs\": {\n",
+      "\"./dev bench front\",\n  \"errors\": \"of each setting the largest of its own and of all "
+      "finer ones that were measured\",\n  \"jobs\": {\n",
       commit().c_str(), processor().c_str(), today().c_str());
   for (std::size_t j = 0; j < jobs.size(); ++j) {
     const Job& job = jobs[j];

@@ -10,8 +10,8 @@
 namespace sunder {
 
 /// What the wall costs when every chunk is an active body, joined to its neighbours by Bullet's
-/// fixed constraints that break at area × strength × dt: milliseconds of processor time of each of `steps`
-/// steps, or fewer when `seconds` are used up.
+/// fixed constraints that break at area × strength × dt: milliseconds of processor time of each of
+/// `steps` steps, or fewer when `seconds` are used up.
 std::vector<double> step_jointed_wall(const WallAsset& wall, double tensile_strength,
                                       const Projectile& projectile, double dt, int iterations,
                                       int steps, double seconds);
