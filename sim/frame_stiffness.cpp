@@ -313,13 +313,14 @@ void FrameSolver::Impl::renew_diaphragm(std::uint32_t slab) {
   std::array<std::uint32_t, 4> node{};
   diaphragm.active = true;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (corners.beams[i] == kNoPart) {
+    if (plates[slab].joint_count < 4 || corners.beams[i] == kNoPart) {
       diaphragm.active = false;
       break;
     }
     const FrameMember& beam = frame.members[corners.beams[i]];
     const Member& member = members[corners.beams[i]];
-    diaphragm.active &= plates[slab].carries[i] && member.role == Role::elastic &&
+    diaphragm.active &= plates[slab].carries[i] != 0 && member.role == Role::elastic &&
+                        frame.joints[plates[slab].joints[i]].share == 1 &&
                         links.end(corners.beams[i], 0).held && links.end(corners.beams[i], 1).held;
     node[i] = member.node[beam.from == corners.nodes[i] ? 0 : 1];
   }

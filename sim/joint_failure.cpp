@@ -42,11 +42,13 @@ void CollapseRun::break_overloaded() {
   read_loads(overloads);
   check_hits(failures);
   check_posts(overloads);
-  if (!breaks_) return give_way(broken_before);
-  if (motion_->redistributes()) keep_most_utilised(overloads);
+  if (!breaks_) return give_way(broken_before, {});
+  std::vector<Weak> weak = weak_members();
+  if (motion_->redistributes()) keep_most_utilised(overloads, weak);
   failures.insert(failures.end(), overloads.begin(), overloads.end());
   break_joints(std::move(failures));
-  give_way(broken_before);
+  give_way(broken_before, weak);
+  divide_members(weak);
   cascade();
 }
 
@@ -56,22 +58,27 @@ void CollapseRun::cascade() {
     std::vector<Failure> failures;
     read_loads(failures);
     check_posts(failures);
-    keep_most_utilised(failures);
+    std::vector<Weak> weak = weak_members();
+    keep_most_utilised(failures, weak);
     for (const std::uint32_t j : motion_->unheld_joints())
       failures.push_back({j, joints_[j].utilisation, "unheld", "balance", {}, true});
     break_joints(std::move(failures));
+    divide_members(weak);
   }
 }
 
-void CollapseRun::keep_most_utilised(std::vector<Failure>& failures) const {
+void CollapseRun::keep_most_utilised(std::vector<Failure>& failures,
+                                     std::vector<Weak>& weak) const {
   double most = 0;
   for (const Failure& failure : failures) most = std::max(most, failure.utilisation);
+  for (const Weak& each : weak) most = std::max(most, each.place.utilisation);
   std::erase_if(failures, [&](const Failure& f) { return f.utilisation < kTogether * most; });
+  std::erase_if(weak, [&](const Weak& w) { return w.place.utilisation < kTogether * most; });
 }
 
-/// What a projectile met stood as if fixed. If joints of it broke under the blow, or it ran ahead,
+/// What a projectile met stood as if fixed. If joints of it, or the part itself, broke under the blow, or it ran ahead,
 /// the projectile keeps what the frame did not take up of its momentum.
-void CollapseRun::give_way(std::size_t broken_before) {
+void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& weak) {
   if (!motion_->redistributes()) return;
   for (std::size_t i = 0; i < shots_.size(); ++i) {
     Shot& shot = shots_[i];
@@ -87,7 +94,7 @@ void CollapseRun::give_way(std::size_t broken_before) {
     shot.given = struck.empty() ? Vec3{} : shot.given + lost;
     Vec3 back;
     for (const std::uint32_t part : struck) {
-      const double share = borne_share(part, broken_before);
+      const double share = borne_share(part, broken_before, weak);
       if (share < 1 || motion_->borne(part) < 1) back = back + motion_->give_back(part, share);
     }
     if (back == Vec3{}) continue;
@@ -99,9 +106,12 @@ void CollapseRun::give_way(std::size_t broken_before) {
   }
 }
 
-/// By the utilisation at which its joints broke in this step; 1: none did.
-double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before) const {
+/// By the utilisation at which its joints, or it itself, broke in this step; 1: none did.
+double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before,
+                                const std::vector<Weak>& weak) const {
   double most = 1;
+  for (const Weak& each : weak)
+    if (each.member == part && is_brittle(each)) most = std::max(most, each.place.utilisation);
   for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
     const JointBreak& broken = result_.broken_joints[i];
     const FrameJoint& joint = frame_.joints[broken.joint];
