@@ -132,10 +132,11 @@ class FrameSolver {
   /// What an elastic member carries between its ends, without what panels on its edges ask of it.
   /// False: it hangs as a rigid cantilever, or carries nothing.
   bool find_span(std::uint32_t member, MemberSpan& span) const;
-  /// Displacement and rotation (or, with `is_loaded` false, their speeds) of a place on an elastic
-  /// member whose nodes move so: in balance with what loads it, m from its start.
+  /// Displacement and rotation (with no loads: their speeds) of a place on an elastic member whose
+  /// nodes move so: in balance with what of the last loads is on it, m from its start.
+  enum class OnMember : std::uint8_t { nothing, weight, all };
   Six motion_within(std::uint32_t member, double along, std::span<const double> motion,
-                    bool is_loaded) const;
+                    OnMember loads) const;
   /// |K u − f| / |f|, largest norm; printed in every report. In wrecks whose linear displacements
   /// reach kilometres no less than the rounding of u leaves: some 1e-12 per metre.
   double residual() const;

@@ -201,10 +201,11 @@ struct FrameSolver::Impl {
     bool by_plate = false;  ///< a slab or wall passes it on
   };
   void list_points();
-  std::vector<PointLoad> points_of(std::uint32_t m);
+  std::vector<PointLoad> points_of(std::uint32_t m, bool with_contacts);
   Vec3 pull_at(std::uint32_t m, Vec3 point) const;
   bool find_span(std::uint32_t m, MemberSpan& span);
-  Six motion_within(std::uint32_t m, double along, std::span<const double> motion, bool is_loaded);
+  Six motion_within(std::uint32_t m, double along, std::span<const double> motion,
+                    OnMember loads);
 
   // frame_solver.cpp: breaking, and from displacements to forces.
   void break_joints(std::span<const std::uint32_t> joints);

@@ -12,14 +12,21 @@ Vec3 three(const Twelve& v, std::size_t first) {
   return {v[first], v[first + 1], v[first + 2]};
 }
 
-/// Of a 6 × 6 system; Gauss's elimination with the largest pivot of each column.
+/// Of a 6 × 6 system; Gauss's elimination with the largest pivot of each column. What nothing
+/// resists, the twist of a member between hinges, does not move.
 Six solution_of(std::array<Six, 6> matrix, Six right) {
+  constexpr double kNoResistance = 1e-12;  // of the largest entry
+  double largest = 0;
+  for (const Six& row : matrix)
+    for (const double entry : row) largest = std::max(largest, std::fabs(entry));
+  const auto vanishes = [&](double pivot) { return std::fabs(pivot) <= kNoResistance * largest; };
   for (std::size_t c = 0; c < 6; ++c) {
     std::size_t pivot = c;
     for (std::size_t r = c + 1; r < 6; ++r)
       if (std::fabs(matrix[r][c]) > std::fabs(matrix[pivot][c])) pivot = r;
     std::swap(matrix[c], matrix[pivot]);
     std::swap(right[c], right[pivot]);
+    if (vanishes(matrix[c][c])) continue;
     for (std::size_t r = c + 1; r < 6; ++r) {
       const double factor = matrix[r][c] / matrix[c][c];
       for (std::size_t k = c; k < 6; ++k) matrix[r][k] -= factor * matrix[c][k];
@@ -28,7 +35,7 @@ Six solution_of(std::array<Six, 6> matrix, Six right) {
   }
   for (std::size_t c = 6; c-- > 0;) {
     for (std::size_t k = c + 1; k < 6; ++k) right[c] -= matrix[c][k] * right[k];
-    right[c] /= matrix[c][c];
+    right[c] = vanishes(matrix[c][c]) ? 0 : right[c] / matrix[c][c];
   }
   return right;
 }
@@ -54,11 +61,13 @@ void FrameSolver::Impl::list_points() {
   std::ranges::stable_sort(points, {}, &PointLoad::member);
 }
 
-/// All that the model puts on a member at single places, ascending.
-std::vector<FrameSolver::Impl::PointLoad> FrameSolver::Impl::points_of(std::uint32_t m) {
+/// What the model puts on a member at single places, ascending.
+std::vector<FrameSolver::Impl::PointLoad> FrameSolver::Impl::points_of(std::uint32_t m,
+                                                                       bool with_contacts) {
   list_points();
   const auto range = std::ranges::equal_range(points, m, {}, &PointLoad::member);
-  std::vector<PointLoad> result(range.begin(), range.end());
+  std::vector<PointLoad> result;
+  if (with_contacts) result.assign(range.begin(), range.end());
   for (const PointMass& mass : point_masses[m]) {
     const Vec3 at = frame.joints[mass.joint].point;
     result.push_back({m, point_on(m, at, mass.mass * pull_at(m, at), {}), true});
@@ -92,7 +101,7 @@ bool FrameSolver::Impl::find_span(std::uint32_t m, MemberSpan& span) {
   span.turn = {};
   span.points.clear();
   if (laid.loads.contacts.empty() && point_masses[m].empty()) return true;
-  for (const PointLoad& load : points_of(m)) {
+  for (const PointLoad& load : points_of(m, true)) {
     const Vec3 push = into(axes, load.point.force), turn = into(axes, load.point.moment);
     if (load.by_plate) {
       span.load_a = span.load_a + 1 / span.length * push;
@@ -107,10 +116,10 @@ bool FrameSolver::Impl::find_span(std::uint32_t m, MemberSpan& span) {
 
 /// The node that the two parts of the element would share, in balance.
 Six FrameSolver::Impl::motion_within(std::uint32_t m, double along, std::span<const double> motion,
-                                     bool is_loaded) {
+                                     OnMember loads) {
   const Member& member = members[m];
   Twelve ends = displacements_of(member, motion);
-  if (is_loaded && bent_of[m] != kNone) {
+  if (loads != OnMember::nothing && bent_of[m] != kNone) {
     const Bent& b = bent[bent_of[m]];
     const Twelve turned = plastic_motion(b, b.rotation);
     for (std::size_t i = 0; i < 12; ++i) ends[i] -= turned[i];
@@ -121,9 +130,9 @@ Six FrameSolver::Impl::motion_within(std::uint32_t m, double along, std::span<co
   half[0].length = along;
   half[1].length = member.response.length - along;
   std::array<BeamLoad, 2> load;
-  if (is_loaded) {
+  if (loads != OnMember::nothing) {
     load[0].uniform = load[1].uniform = line_mass(m) * pull_at(m, member.at(along));
-    for (const PointLoad& each : points_of(m)) {
+    for (const PointLoad& each : points_of(m, loads == OnMember::all)) {
       const std::size_t i = each.point.at <= along ? 0 : 1;
       load[i].points.push_back(each.point);
       if (i == 1) load[i].points.back().at -= along;
@@ -151,8 +160,8 @@ bool FrameSolver::find_span(std::uint32_t member, MemberSpan& span) const {
 }
 
 Six FrameSolver::motion_within(std::uint32_t member, double along, std::span<const double> motion,
-                               bool is_loaded) const {
-  return impl_->motion_within(member, along, motion, is_loaded);
+                               OnMember loads) const {
+  return impl_->motion_within(member, along, motion, loads);
 }
 
 }  // namespace sunder

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Members of the standing frame divide: its solvers are made anew with a node for each, which starts
-// where the place was that it stands for.
+// where the place was that it stands for. In time without what contacts bend on the way between the
+// ends: what they push there was not yet in motion.
 #include <algorithm>
 
 #include "sim/standing_frame.hpp"
@@ -12,11 +13,11 @@ void StandingFrame::begin_divisions(std::span<const MemberCut> cuts) {
   if (cuts.empty()) return;
   undivided_.in_time = in_time();
   undivided_.hinges = stiff_hinges();
+  if (!undivided_.in_time) return;
+  using OnMember = FrameSolver::OnMember;
   for (const MemberCut& cut : cuts) {
-    undivided_.u.push_back(
-        in_use().motion_within(cut.member, cut.at, in_use().displacements(), true));
-    if (undivided_.in_time)
-      undivided_.v.push_back(in_use().motion_within(cut.member, cut.at, v_, false));
+    undivided_.u.push_back(in_use().motion_within(cut.member, cut.at, u_, OnMember::weight));
+    undivided_.v.push_back(in_use().motion_within(cut.member, cut.at, v_, OnMember::nothing));
   }
 }
 
