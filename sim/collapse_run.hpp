@@ -104,6 +104,7 @@ class CollapseRun {
   void add_members();
   std::vector<Weak> weak_members();
   bool is_brittle(const Weak& weak) const;
+  bool is_inside(std::uint32_t joint) const;
   void divide_members(const std::vector<Weak>& weak);
   std::array<PartSolid, 2> divide_part(const MemberDivision& division);
   std::vector<std::uint32_t> follow_kinks();
@@ -124,6 +125,7 @@ class CollapseRun {
   std::vector<Joint> joints_;
   std::vector<std::vector<std::uint32_t>> joints_of_;  ///< by part
   std::vector<Member> members_;                        ///< none: they do not divide
+  std::uint32_t drawn_nodes_ = kNoPart;                ///< nodes that are no place of a division
   Kinks kinks_;
   std::vector<Shot> shots_;
   Recorder recorder_;

@@ -218,7 +218,8 @@ Vec3 CollapseRun::place_of(std::uint32_t j) const {
   return motion_->pose(joint.a) * into(solid.axes, joint.point - solid.centre);
 }
 
-/// A projectile breaks the joints of what it touches that lie within its radius of the contact.
+/// A projectile breaks the joints of what it touches that lie within its radius of the contact, not
+/// the members themselves.
 void CollapseRun::check_hits(std::vector<Failure>& failures) {
   for (const Contact& contact : world_.contacts()) {
     for (std::uint32_t s = 0; s < shots_.size(); ++s) {
@@ -230,7 +231,7 @@ void CollapseRun::check_hits(std::vector<Failure>& failures) {
       if (!panels_ || !panels_->is_wall(part)) note_hit(contact, s, last_dt_);
       if (!scene_.rules.hit_breaks) continue;
       for (const std::uint32_t j : joints_of_[part]) {
-        if (!joints_[j].intact) continue;
+        if (!joints_[j].intact || is_inside(j)) continue;
         if (length(place_of(j) - contact.point) > scene_.projectiles[s].radius) continue;
         failures.push_back(
             {j, joints_[j].utilisation, "hit", scene_.projectiles[s].name, {}, true});

@@ -9,6 +9,7 @@
 namespace sunder {
 
 void CollapseRun::add_members() {
+  drawn_nodes_ = static_cast<std::uint32_t>(frame_.nodes.size());
   for (std::uint32_t m = 0; m < frame_.members.size(); ++m) {
     const std::uint32_t joint_class = class_within(frame_, m, joints_of_[m]);
     const Section& section = frame_.sections[frame_.members[m].section];
@@ -34,6 +35,12 @@ std::vector<CollapseRun::Weak> CollapseRun::weak_members() {
 
 bool CollapseRun::is_brittle(const Weak& weak) const {
   return frame_.classes[members_[weak.member].joint_class].rotation_capacity <= 0;
+}
+
+/// Whether a joint joins the parts of one member.
+bool CollapseRun::is_inside(std::uint32_t j) const {
+  const std::uint32_t node = frame_.joints[j].node;
+  return node != kNoPart && node >= drawn_nodes_;
 }
 
 void CollapseRun::divide_members(const std::vector<Weak>& weak) {

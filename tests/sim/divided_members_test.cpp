@@ -138,6 +138,37 @@ TEST(MemberSpan, NoSampleIsWorseThanThePlaceOrTheBoundSays) {
   EXPECT_GT(cleared, 5);
 }
 
+/// Seen from its other end.
+MemberSpan mirrored(const MemberSpan& span) {
+  const auto along = [](Vec3 v) { return Vec3{-v.x, v.y, v.z}; };
+  const auto about = [](Vec3 v) { return Vec3{v.x, -v.y, -v.z}; };
+  const JointLoad end = load_at(span, span.length, true);
+  MemberSpan result = span;
+  result.start = {-1 * along(end.force), -1 * about(end.torque)};
+  result.load_a = along(span.load_b), result.load_b = along(span.load_a);
+  result.turn = about(span.turn);
+  std::ranges::reverse(result.points);
+  for (MemberSpan::Point& point : result.points)
+    point = {span.length - point.at, along(point.force), about(point.moment)};
+  return result;
+}
+
+TEST(MemberSpan, TheMirroredOneFailsInTheMirroredPlace) {
+  const JointStrength strength = ipe300();
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const MemberSpan span = random_span(seed, 3e5);
+    const auto place = weakest_inside(span, strength, 0.1);
+    const auto other = weakest_inside(mirrored(span), strength, 0.1);
+    ASSERT_EQ(place.has_value(), other.has_value()) << "seed " << seed;
+    if (!place) continue;
+    ++found;
+    EXPECT_NEAR(place->utilisation, other->utilisation, 1e-9 * place->utilisation);
+    EXPECT_NEAR(place->at, span.length - other->at, 1e-6) << "seed " << seed;
+  }
+  EXPECT_GT(found, 50);
+}
+
 TEST(DividedMembers, PartsWeighAndTurnAsTheWhole) {
   const CollapseScene scene = regular_scene(2, 2, 1);
   const PartSolid whole = solid_of(scene.frame, part_named(scene.frame, "beam_x_0_0_0"));
