@@ -29,8 +29,8 @@ void print_projectile(const ProjectileOutcome& p) {
   }
 }
 
-void print_break(const Frame& frame, const JointBreak& b) {
-  std::fprintf(stderr, "  %8.4f s  %s: %.*s", b.time, frame.joints[b.joint].name.c_str(),
+void print_break(const Frame& frame, const CollapseResult& r, const JointBreak& b) {
+  std::fprintf(stderr, "  %8.4f s  %s: %.*s", b.time, joint_name(frame, r, b.joint).c_str(),
                static_cast<int>(b.mode.size()), b.mode.data());
   if (!b.rule.empty()) std::fprintf(stderr, " (%s)", b.rule.c_str());
   if (!b.component.empty()) std::fprintf(stderr, ", mostly %s", b.component.c_str());
@@ -49,12 +49,15 @@ void print_damage(const Frame& frame, const CollapseResult& r) {
   }
   std::fprintf(
       stderr, "%zu of %zu joints broken%s, %llu of %u parts freed, utilisation up to %.4g\n",
-      r.broken_joints.size(), frame.joints.size(), modes.empty() ? "" : (modes + ")").c_str(),
-      as_count(r.parts_freed), frame.part_count(), r.max_utilisation);
+      r.broken_joints.size(), std::max(frame.joints.size(), r.recording.joints.size()), modes.empty() ? "" : (modes + ")").c_str(),
+      as_count(r.parts_freed),
+      frame.part_count() + static_cast<std::uint32_t>(r.members_divided), r.max_utilisation);
   for (std::size_t i = 0; i < std::min(kShown, r.broken_joints.size()); ++i)
-    print_break(frame, r.broken_joints[i]);
+    print_break(frame, r, r.broken_joints[i]);
   if (r.broken_joints.size() > kShown)
     std::fprintf(stderr, "  … and %zu more\n", r.broken_joints.size() - kShown);
+  if (r.members_divided > 0)
+    std::fprintf(stderr, "%llu members divided between their ends\n", as_count(r.members_divided));
   if (!r.yielded_joints.empty())
     std::fprintf(stderr, "%zu joints bent, by %.3g rad at most\n", r.yielded_joints.size(),
                  std::ranges::max_element(r.yielded_joints, {}, &JointYield::rotation)->rotation);

@@ -10,9 +10,8 @@ namespace {
 void write_joints(JsonLines& json, const Frame& frame, const CollapseResult& r) {
   json.open("broken_joints", '[');
   for (const JointBreak& each : r.broken_joints) {
-    assert(each.joint < frame.joints.size());
     json.open('{');
-    json.text("joint", frame.joints[each.joint].name);
+    json.text("joint", joint_name(frame, r, each.joint));
     json.number("time", each.time);
     json.number("utilisation", each.utilisation);
     json.text("mode", each.mode);
@@ -23,9 +22,8 @@ void write_joints(JsonLines& json, const Frame& frame, const CollapseResult& r) 
   json.close();
   json.open("yielded_joints", '[');
   for (const JointYield& each : r.yielded_joints) {
-    assert(each.joint < frame.joints.size());
     json.open('{');
-    json.text("joint", frame.joints[each.joint].name);
+    json.text("joint", joint_name(frame, r, each.joint));
     json.number("time", each.time);
     json.number("utilisation", each.utilisation);
     json.number("rotation", each.rotation);
@@ -37,6 +35,7 @@ void write_joints(JsonLines& json, const Frame& frame, const CollapseResult& r) 
   for (std::size_t i = 0; i < counts.size(); ++i) json.count(kBreakModes[i], counts[i]);
   json.close();
   json.count("broken_at_rest", r.broken_at_rest);
+  json.count("members_divided", r.members_divided);
   json.open("buckles", '[');
   for (const Buckling& each : r.buckles) {
     json.open('{');
@@ -134,6 +133,12 @@ std::array<std::uint64_t, kBreakModes.size()> count_by_mode(const CollapseResult
     counts[i] = static_cast<std::uint64_t>(
         std::ranges::count(result.broken_joints, kBreakModes[i], &JointBreak::mode));
   return counts;
+}
+
+const std::string& joint_name(const Frame& frame, const CollapseResult& result,
+                              std::uint32_t joint) {
+  return joint < frame.joints.size() ? frame.joints[joint].name
+                                     : result.recording.joints[joint].name;
 }
 
 std::string collapse_report_json(const CollapseReport& report) {

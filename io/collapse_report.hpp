@@ -25,6 +25,9 @@ struct CollapseReport {
 /// JSON text; numbers read back as the same doubles, one that is not finite is null.
 std::string collapse_report_json(const CollapseReport& report);
 
+/// Of the scene's frame, or where a member divided: see Recording.
+const std::string& joint_name(const Frame& frame, const CollapseResult& result,
+                              std::uint32_t joint);
 /// Every mode of JointBreak, in the order of the report's "broken_by".
 inline constexpr std::array<std::string_view, 7> kBreakModes = {
     "strength", "hit", "buckling", "unbraced", "removed", "unheld", "panel"};

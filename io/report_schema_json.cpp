@@ -119,6 +119,8 @@ constexpr ReportKey kCollapseKeys[] = {
     {"broken_by", "object", "How many broke in which mode."},
     {"broken_at_rest", "integer",
      "Of them, before a projectile, a removal, a load or a motion of the ground."},
+    {"members_divided", "integer",
+     "Posts and beams that failed between their ends, to part or to bend there."},
     {"buckles", "array",
      "When what stands had no second-order equilibrium any more; from then on it is solved in "
      "first order."},

@@ -26,6 +26,8 @@ std::span<const Field<BreakingRules>> fields() {
        "Whether anything fails; false: joints and posts hold whatever happens, to see sag and "
        "forces."},
       {"hit_breaks", &P::hit_breaks, "", "Whether a joint that a projectile touches fails."},
+      {"members_divide", &P::members_divide, "",
+       "Whether posts and beams fail between their ends too; with the solver hybrid."},
       {"load_time",
        &P::load_time,
        "s",

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/contact_order.hpp"
+#include "sim/divided_members.hpp"
 #include "sim/part_pose.hpp"
 
 namespace sunder {
@@ -24,8 +25,9 @@ BuildingBodies::BuildingBodies(const CollapseScene& scene, RigidWorld& world,
 
 void BuildingBodies::add_collider(std::uint32_t part) {
   const Prism prism{solids_[part].hull, solids_[part].half_length};
-  const BodyId body = world_.add_static(pose_of(solids_[part]), {&prism, 1},
-                                        surface_of(frame_, part), kStandingOrder + part);
+  const BodyId body =
+      world_.add_static(pose_of(solids_[part]), {&prism, 1}, surface_of(frame_, part),
+                        kStandingOrder + next_order_++);
   collider_of_[part] = body;
   take_shape(part, body);
 }
@@ -147,6 +149,34 @@ void BuildingBodies::split(std::uint32_t index, std::vector<std::vector<std::uin
     body.velocity = velocity + cross(spin, pose * body.centroid - centre);
     add_piece(std::move(group), body);
   }
+}
+
+void BuildingBodies::make_room(std::uint32_t first, std::uint32_t count) {
+  piece_of_.insert(piece_of_.begin() + first, count, kGone);
+  collider_of_.insert(collider_of_.begin() + first, count, kNoBody);
+  mass_.insert(mass_.begin() + first, count, 0);
+  for (std::vector<std::uint32_t>& parts : parts_of_body_)
+    for (std::uint32_t& part : parts) part = moved_up(part, first, count);
+  for (Piece& piece : pieces_)
+    for (std::uint32_t& part : piece.parts) part = moved_up(part, first, count);
+}
+
+std::uint32_t BuildingBodies::divide(std::uint32_t member, std::uint32_t part) {
+  piece_of_[part] = piece_of_[member];
+  mass_[member] = solids_[member].mass;
+  mass_[part] = solids_[part].mass;
+  if (stands(member)) {
+    give_up_shape(member);
+    add_collider(member);
+    add_collider(part);
+    return kNoPart;
+  }
+  const std::uint32_t piece = piece_of_[member];
+  std::vector<std::uint32_t> parts = pieces_[piece].parts;
+  parts.push_back(part);
+  std::ranges::sort(parts);
+  split(piece, {std::move(parts)});
+  return piece;
 }
 
 void BuildingBodies::remove(std::uint32_t part) {

@@ -43,6 +43,11 @@ class BuildingBodies {
   void release(std::vector<std::uint32_t> parts, const BodyParams& body);
   /// A piece falls into these groups of its parts, which go on with the motion it had.
   void split(std::uint32_t piece, std::vector<std::vector<std::uint32_t>> groups);
+  /// Parts from `first` on have numbers higher by `count` now.
+  void make_room(std::uint32_t first, std::uint32_t count);
+  /// A member is two parts now, that stand, or move as one still. Returns the piece that it was in,
+  /// which is another one now; kNoPart: it stood.
+  std::uint32_t divide(std::uint32_t member, std::uint32_t part);
   void remove(std::uint32_t part);  ///< a piece of its own
   /// A piece of its own goes to someone else, with its share of the baseline.
   FrameMotion::Leaving hand_over(std::uint32_t part);
@@ -71,6 +76,7 @@ class BuildingBodies {
   std::vector<std::vector<std::uint32_t>> parts_of_body_;  ///< by BodyId: prism → part
   std::vector<Piece> pieces_;
   std::uint64_t piece_count_ = 0, serial_ = 0;
+  std::uint64_t next_order_ = 0;  ///< of colliders
   double live_ = 0, baseline_ = 0;
 };
 

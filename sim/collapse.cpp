@@ -50,6 +50,7 @@ CollapseRun::CollapseRun(const CollapseScene& scene, const CollapseParams& param
       world_(world_params(scene)),
       posts_(scene_.frame, scene.rules.post_rule),
       joints_of_(scene.frame.part_count()),
+      kinks_(scene_.frame),
       shots_(scene.projectiles.size()) {
   const std::vector<FrameDefect> defects = defects_of(frame_);
   if (!defects.empty())
@@ -79,6 +80,7 @@ CollapseRun::CollapseRun(const CollapseScene& scene, const CollapseParams& param
   motion_ = scene.simulation.solver == "bullet" ? jointed_motion(scene_, world_, solids_)
                                                 : elastic_motion(scene_, world_, solids_);
   if (!frame_.patterns.empty()) add_panels();
+  if (scene.rules.members_divide && motion_->finds_spans()) add_members();
 }
 
 void CollapseRun::add_panels() {
@@ -367,12 +369,14 @@ void CollapseRun::record(double time) {
     if (track == kNoTrack) track = recorder_.add_track(kNoTrack);
     recorder_.add_pose(track, pose());
   };
-  const bool any_moving = motion_->any_moving();
+  const std::vector<std::uint32_t> bent = follow_kinks();
+  const bool any_moving = motion_->any_moving() || !bent.empty();
   if (!any_moving) result_.body_steps_asleep += present_parts_;
   if (!any_moving) result_.poses_not_recorded += present_parts_;
   for (std::uint32_t i = 0; any_moving && i < parts_.size(); ++i)
     if (!std::isfinite(parts_[i].removed))
-      note(motion_->is_moving(i), parts_[i].track, [&] { return motion_->pose(i); });
+      note(motion_->is_moving(i) || std::ranges::binary_search(bent, i), parts_[i].track,
+           [&] { return motion_->pose(i); });
   for (Shot& shot : shots_)
     if (shot.body != kNoBody)
       note(world_.is_awake(shot.body), shot.track, [&] { return world_.pose(shot.body); });
@@ -390,6 +394,7 @@ void CollapseRun::sample(double time) {
   all_known_ = false;
   const double last = sample_times_.empty() ? -1 : sample_times_.back();
   sample_times_.push_back(time);
+  sample_starts_.push_back(samples_.size());
   for (Joint& joint : joints_) {
     samples_.push_back(joint.broken > last ? joint.peak : JointSample{});
     joint.is_read = false;  // the next reading takes its place
@@ -480,7 +485,8 @@ Recording CollapseRun::recording() {
   for (std::uint32_t i = 0; i < parts_.size(); ++i) {
     const PartSolid& solid = solids_[i];
     recording.parts.push_back({frame_.part_name(i), solid.outline, solid.half_length,
-                               solid.material, solid.mass, pose_of(solid), parts_[i].track,
+                               solid.material, solid.mass,
+                               parts_[i].stood.value_or(pose_of(solid)), parts_[i].track,
                                i < frame_.members.size(), parts_[i].removed});
   }
   for (std::uint32_t j = 0; j < joints_.size(); ++j) {
@@ -489,9 +495,17 @@ Recording CollapseRun::recording() {
                                 joint.end_a, joint.end_b, joint.point, joints_[j].broken});
   }
   recording.sample_times = std::move(sample_times_);
-  recording.samples = std::move(samples_);
   recording.seed = scene_.seed;
   recording.series = std::move(series_);
+  // Joints that came in carried nothing before.
+  for (std::size_t i = 0; i < sample_starts_.size(); ++i) {
+    const auto row = samples_.begin() + static_cast<long>(sample_starts_[i]);
+    const bool is_last = i + 1 == sample_starts_.size();
+    const auto end =
+        is_last ? samples_.end() : samples_.begin() + static_cast<long>(sample_starts_[i + 1]);
+    recording.samples.insert(recording.samples.end(), row, end);
+    recording.samples.resize((i + 1) * joints_.size());
+  }
   for (std::size_t i = 0; i < shots_.size(); ++i)
     recording.projectiles.push_back({scene_.projectiles[i], shots_[i].track});
   return recording;

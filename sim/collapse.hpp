@@ -24,6 +24,7 @@ struct BreakingRules {
   std::string post_rule = "ec3";
   bool breaking = true;    ///< false: joints hold whatever happens, to see sag and forces
   bool hit_breaks = true;  ///< a joint that a projectile touches fails (the paper's rule)
+  bool members_divide = true;  ///< posts and beams fail between their ends too ("hybrid" only)
   /// Loads are judged by their mean over so long, s (first-order lag): a blow of impulse J on rigid
   /// members shows as J/load_time, as on an elastic one, where it is J ω. The default is T/2π of a
   /// loaded floor beam (IPE300, 6 m, a slab's weight: 8 Hz). 0: the force of a single step, as the
@@ -112,6 +113,7 @@ struct CollapseResult {
   std::uint64_t parts_freed = 0;           ///< members, slabs, walls no longer joined to the ground
   std::vector<JointBreak> broken_joints;   ///< by time, then joint
   std::vector<JointYield> yielded_joints;  ///< by time, then joint
+  std::uint64_t members_divided = 0;      ///< between their ends, to part or to bend there
   std::uint64_t broken_at_rest = 0;       ///< of them, before a projectile, removal, load or motion
   double max_utilisation = 0;             ///< of any joint or post at any time from 0 on
   double utilisation_at_rest = 0;         ///< at time 0

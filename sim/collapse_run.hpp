@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/collapse.hpp"
+#include "sim/divided_members.hpp"
 #include "sim/frame_motion.hpp"
 #include "sim/panels.hpp"
 #include "sim/post_stability.hpp"
@@ -25,6 +26,18 @@ class CollapseRun {
   struct Part {
     std::uint32_t track = kNoTrack;
     double removed = std::numeric_limits<double>::infinity();
+    std::optional<Pose> stood{};  ///< if it is not where its solid is now
+  };
+  /// What a member bears between its ends.
+  struct Member {
+    std::uint32_t joint_class = 0;
+    JointStrength strength;
+    double margin = 0;     ///< of its ends, that are their joints' business, m
+    bool is_part = false;  ///< of one that divided: that does not divide again
+  };
+  struct Weak {
+    std::uint32_t member = 0;
+    WeakPlace place;
   };
   struct Joint {
     bool intact = true;
@@ -85,9 +98,10 @@ class CollapseRun {
   void break_overloaded();
   void cascade();
   void crack_panels();
-  void keep_most_utilised(std::vector<Failure>& failures) const;
-  void give_way(std::size_t broken_before);
-  double borne_share(std::uint32_t part, std::size_t broken_before) const;
+  void keep_most_utilised(std::vector<Failure>& failures, std::vector<Weak>& weak) const;
+  void give_way(std::size_t broken_before, const std::vector<Weak>& weak);
+  double borne_share(std::uint32_t part, std::size_t broken_before,
+                     const std::vector<Weak>& weak) const;
   std::uint32_t struck_part(const Contact& contact, BodyId ball) const;
   void read_loads(std::vector<Failure>& failures);
   Utilisation demand_on(std::uint32_t joint, const JointLoad& load);
@@ -95,6 +109,15 @@ class CollapseRun {
   void check_posts(std::vector<Failure>& failures);
   void check_hits(std::vector<Failure>& failures);
   void note_hit(const Contact& contact, std::uint32_t shot, double dt);
+  // member_failure.cpp: members that fail between their ends.
+  void add_members();
+  std::vector<Weak> weak_members();
+  bool is_brittle(const Weak& weak) const;
+  bool is_inside(std::uint32_t joint) const;
+  void divide_members(const std::vector<Weak>& weak);
+  std::array<PartSolid, 2> divide_part(const MemberDivision& division);
+  std::vector<std::uint32_t> follow_kinks();
+
   Vec3 place_of(std::uint32_t joint) const;
   void break_joints(std::vector<Failure> failures);
   void break_joint(const Failure& failure);
@@ -110,11 +133,15 @@ class CollapseRun {
   std::vector<Part> parts_;
   std::vector<Joint> joints_;
   std::vector<std::vector<std::uint32_t>> joints_of_;  ///< by part
+  std::vector<Member> members_;                        ///< none: they do not divide
+  std::uint32_t drawn_nodes_ = kNoPart;                ///< nodes that are no place of a division
+  Kinks kinks_;
   std::vector<Shot> shots_;
   Recorder recorder_;
   std::vector<double> sample_times_;
   std::vector<JointSample> samples_;
   std::vector<RunSample> series_;
+  std::vector<std::size_t> sample_starts_;  ///< of each time
   CollapseResult result_;
   double posts_use_ = 0;     ///< largest of all posts at the last look
   double used_ = 0;          ///< largest utilisation since the last sample
@@ -122,6 +149,7 @@ class CollapseRun {
   std::uint64_t intact_joints_ = 0, present_parts_ = 0;
   bool all_known_ = false;    ///< no joint has to be read until a load changes or a sample is taken
   bool posts_known_ = false;  ///< nor a post
+  bool members_known_ = false;  ///< nor a member between its ends
   bool breaks_ = false;       ///< settled: joints can break
   bool disturbed_ = false;    ///< something has happened to the building
   std::uint64_t unsettled_steps_ =

@@ -29,11 +29,15 @@ void ElasticMotion::touch(const Contact& contact, std::uint32_t part, Vec3 impul
 }
 
 /// Forces on what stands.
-void ElasticMotion::press() {
+std::vector<FrameLoads::OnPart> ElasticMotion::standing_contacts() const {
   std::vector<FrameLoads::OnPart> contacts;
   for (const std::uint32_t part : touches_.active())
     if (!bodies_.is_loose(part)) contacts.push_back(touches_.load_on(part));
-  standing_.set_contacts(std::move(contacts));
+  return contacts;
+}
+
+void ElasticMotion::press() {
+  standing_.set_contacts(standing_contacts());
 }
 
 /// Of the place that is touched, along the force, beyond the speed of what struck it.

@@ -207,12 +207,16 @@ std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
 void ElasticMotion::rejoin(std::span<const std::uint32_t> joints) {
   if (joints.empty()) return;
   const double before = standing_.energy();
-  graph_ = SupportGraph(frame_.part_count(), bonds_of(frame_));
-  links_.list_again();
-  if (const std::vector<std::uint32_t> broken = links_.broken(); !broken.empty())
-    graph_.break_bonds(broken);
+  link_again();
   standing_.rejoin();
   fracture_ += before - standing_.energy();
+}
+
+void ElasticMotion::link_again() {
+  links_.list_again();
+  graph_ = SupportGraph(frame_.part_count(), bonds_of(frame_));
+  if (const std::vector<std::uint32_t> broken = links_.broken(); !broken.empty())
+    graph_.break_bonds(broken);
 }
 
 void ElasticMotion::remove_part(std::uint32_t part) {

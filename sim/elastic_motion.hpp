@@ -39,6 +39,10 @@ class ElasticMotion final : public FrameMotion {
   double borne(std::uint32_t part) const override { return touches_[part].borne; }
   Vec3 give_back(std::uint32_t part, double share) override;
   void rejoin(std::span<const std::uint32_t> joints) override;
+  bool finds_spans() const override { return true; }
+  bool find_span(std::uint32_t member, MemberSpan& span) const override;
+  void begin_divisions(std::span<const MemberCut> cuts) override;
+  void end_divisions(std::span<const MemberDivision> divisions) override;
   void remove_part(std::uint32_t part) override;
   void add_load(double more) override;
   bool stands(std::uint32_t part) const override { return bodies_.stands(part); }
@@ -76,16 +80,21 @@ class ElasticMotion final : public FrameMotion {
  private:
   // elastic_motion.cpp
   double energy() const;  ///< of frame and bodies, J
+  void link_again();
   void part_bodies();
   bool settle_hinges();
   void stop_turning(std::span<const std::uint32_t> joints);
   std::vector<std::uint32_t> release_loose();
+
+  // elastic_division.cpp: members in two parts.
+  void divide_touch(const MemberDivision& division);
 
   // elastic_contacts.cpp: what touches the parts.
   void note_contacts(double dt);
   void touch(const Contact& contact, std::uint32_t part, Vec3 impulse);
   double speed_ahead(std::uint32_t part) const;
   void limit_blows();
+  std::vector<FrameLoads::OnPart> standing_contacts() const;
   void press();
 
   // elastic_release.cpp: how parts of a ringing frame move.
@@ -109,6 +118,7 @@ class ElasticMotion final : public FrameMotion {
   std::vector<StandingFrame::Hinge> yielding_;       ///< since breaks were settled
   std::vector<SupportReaction> supports_;
   double since_step_ = 0, given_ = 0, fracture_ = 0;
+  double undivided_ = 0;  ///< energy of the standing frame when divisions began, J
   std::uint64_t skipped_ = 0;
 };
 

@@ -92,7 +92,8 @@ std::vector<JointClass> built_in_classes();
 /// A connection that can break. Part numbers count members, then slabs, then walls (see
 /// part_count).
 struct FrameJoint {
-  enum class Kind : std::uint8_t { base, splice, beam_end, slab, wall };
+  /// inside: between the two parts of a beam that divided; of a post that is a splice too.
+  enum class Kind : std::uint8_t { base, splice, beam_end, slab, wall, inside };
   /// "<part a>@<part b>", "<part a>@ground"; "<part a>@ground@<node>" if both its ends are held
   std::string name;
   Kind kind = Kind::beam_end;
@@ -106,6 +107,8 @@ struct FrameJoint {
   Axes axes;
   JointStrength strength;
   std::uint32_t joint_class = 0;
+  std::uint8_t edge = 0;  ///< of slabs and walls: along which of their four edges
+  double share = 1;       ///< of that edge's length
 };
 
 /// A building as data. Everything that analyses or moves it (rigid bodies, the static solver) reads

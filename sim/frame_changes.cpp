@@ -62,7 +62,8 @@ void FrameSolver::Impl::renew_plate(std::uint32_t p) {
   lay_plate(plate, -1);
   for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
     const std::uint32_t j = plate.joints[i];
-    plate.carries[i] = !gone[plate.part] && links.intact(j) && members[frame.joints[j].b].present();
+    const bool carries = !gone[plate.part] && links.intact(j);
+    plate.carries[i] = carries && members[frame.joints[j].b].present() ? 1 : 0;
   }
   settle(frame, plate);
   lay_plate(plate, 1);

@@ -87,7 +87,8 @@ class Joints {
   std::vector<std::uint32_t> carriers() const;
   std::string ground_name(MemberEnd a) const;
   const FrameMember& weaker(MemberEnd a, MemberEnd b) const;
-  FrameJoint plate_joint(Kind kind, std::uint32_t part, std::uint32_t member, Vec3 into) const;
+  FrameJoint plate_joint(Kind kind, std::uint32_t part, std::uint32_t member, Vec3 into,
+                         std::size_t edge) const;
 
   Frame& frame_;
   std::uint32_t post_ = 0, beam_ = 0;
@@ -173,8 +174,8 @@ void Joints::join_members() {
 }
 
 /// At the middle of a member that carries a slab or wall lying to the side `into`.
-FrameJoint Joints::plate_joint(Kind kind, std::uint32_t part, std::uint32_t member,
-                               Vec3 into) const {
+FrameJoint Joints::plate_joint(Kind kind, std::uint32_t part, std::uint32_t member, Vec3 into,
+                               std::size_t edge) const {
   const FrameMember& carrier = frame_.members[member];
   const Vec3 along = axes_of(frame_, carrier).x;
   const Vec3 normal = cross(into, along);
@@ -188,13 +189,15 @@ FrameJoint Joints::plate_joint(Kind kind, std::uint32_t part, std::uint32_t memb
   joint.axes = {cross(along, z), along, z};
   joint.joint_class = find_class(frame_, kind == Kind::slab ? "slab" : "wall");
   joint.strength = strength_of(frame_.classes[joint.joint_class], nullptr, nullptr);
+  joint.edge = static_cast<std::uint8_t>(edge);
   return joint;
 }
 
 void Joints::join_slabs() {
   for (std::uint32_t s = 0; s < frame_.slabs.size(); ++s) {
-    for (const std::uint32_t beam : frame_.slabs[s].beams) {
-      frame_.joints.push_back(plate_joint(Kind::slab, frame_.slab_part(s), beam, {0, 1, 0}));
+    for (std::size_t i = 0; i < 4; ++i) {
+      frame_.joints.push_back(
+          plate_joint(Kind::slab, frame_.slab_part(s), frame_.slabs[s].beams[i], {0, 1, 0}, i));
     }
   }
 }
@@ -207,7 +210,7 @@ void Joints::join_walls() {
       // The opposite edge less this one.
       const auto at = [&](std::size_t k) { return frame_.nodes[wall.nodes[k % 4]].position; };
       const Vec3 into = (at(i + 2) + at(i + 3)) - (at(i) + at(i + 1));
-      frame_.joints.push_back(plate_joint(Kind::wall, frame_.wall_part(w), wall.edges[i], into));
+      frame_.joints.push_back(plate_joint(Kind::wall, frame_.wall_part(w), wall.edges[i], into, i));
     }
   }
 }

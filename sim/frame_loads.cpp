@@ -80,12 +80,16 @@ Twelve FrameSolver::Impl::held_under(std::uint32_t m, const BeamLoad& load) cons
 }
 
 /// Anywhere near a member: at the nearest point of its axis, with the moment of the arm.
-Twelve FrameSolver::Impl::held_at(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) const {
+BeamLoad::Point FrameSolver::Impl::point_on(std::uint32_t m, Vec3 point, Vec3 force,
+                                            Vec3 moment) const {
   const Member& member = members[m];
   const double at =
       std::clamp(dot(point - member.start, member.response.axes.x), 0.0, member.response.length);
-  const Vec3 turn = moment + cross(point - member.at(at), force);
-  return held_under(m, {.uniform = {}, .points = {{at, force, turn}}});
+  return {at, force, moment + cross(point - member.at(at), force)};
+}
+
+Twelve FrameSolver::Impl::held_at(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) const {
+  return held_under(m, {.uniform = {}, .points = {point_on(m, point, force, moment)}});
 }
 
 void FrameSolver::Impl::add_load(std::uint32_t m, const BeamLoad& load) {
@@ -93,23 +97,34 @@ void FrameSolver::Impl::add_load(std::uint32_t m, const BeamLoad& load) {
   for (std::size_t i = 0; i < 12; ++i) fixed[m][i] += by_nodes[i];
 }
 
-void FrameSolver::Impl::share_contact(std::uint32_t p, const FrameLoads::OnPart& contact) {
+/// What of a contact a slab or wall passes to its carriers, by joint; world.
+std::vector<std::pair<std::uint32_t, JointLoad>> FrameSolver::Impl::shares_of(
+    std::uint32_t p, const FrameLoads::OnPart& contact) const {
   const PlateSupport& plate = plates[p];
-  if (plate.rest == PlateSupport::Rest::none) return;
-  std::array<Vec3, 4> points;
-  std::array<std::uint32_t, 4> joints{};
-  std::size_t count = 0;
+  if (plate.rest == PlateSupport::Rest::none) return {};
+  std::vector<Vec3> places;
+  std::vector<double> weights;
+  std::vector<std::pair<std::uint32_t, JointLoad>> shares;
   for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
-    if (!plate.carries[i]) continue;
-    joints[count] = plate.joints[i];
-    points[count++] = frame.joints[plate.joints[i]].point;
+    if (plate.carries[i] == 0) continue;
+    const FrameJoint& joint = frame.joints[plate.joints[i]];
+    places.push_back(joint.point);
+    weights.push_back(joint.share);
+    shares.push_back({plate.joints[i], {}});
   }
-  const SharedForce shared = share_force({points.data(), count}, contact.point, contact.force);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t m = frame.joints[joints[i]].b;
+  const SharedForce shared = share_force(places, contact.point, contact.force, weights);
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    shares[i].second = {shared.force[i], weights[i] * shared.torque};
+  return shares;
+}
+
+void FrameSolver::Impl::share_contact(std::uint32_t p, const FrameLoads::OnPart& contact) {
+  for (const auto& [j, load] : shares_of(p, contact)) {
+    const std::uint32_t m = frame.joints[j].b;
     if (members[m].present())
-      contact_loads.members.emplace_back(m, held_at(m, points[i], shared.force[i], shared.torque));
-    contact_loads.plates.push_back({joints[i], {shared.force[i], shared.torque}});
+      contact_loads.members.emplace_back(
+          m, held_at(m, frame.joints[j].point, load.force, load.torque));
+    contact_loads.plates.emplace_back(j, load);
   }
 }
 
@@ -285,6 +300,8 @@ void FrameSolver::Impl::collect(const FrameLoads& loads, std::span<double> resul
     return;
   }
   unlay();
+  laid.loads = loads;
+  points_known = false;
   fixed.assign(members.size(), {});
   lay_live(loads.live);
   weigh_pieces();

@@ -11,6 +11,8 @@
 
 #include "sim/collapse.hpp"
 #include "sim/contact_order.hpp"
+#include "sim/divided_members.hpp"
+#include "sim/member_span.hpp"
 #include "sim/panel_element.hpp"
 #include "sim/rigid_world.hpp"
 
@@ -64,6 +66,16 @@ class FrameMotion {
   virtual Vec3 give_back(std::uint32_t, double) { return {}; }
   /// The frame's joints with these numbers have another part b now.
   virtual void rejoin(std::span<const std::uint32_t> joints) = 0;
+
+  // Members that divide between their ends.
+  /// What a member carries between its ends. False: nothing is known of it.
+  virtual bool find_span(std::uint32_t, MemberSpan&) const { return false; }
+  virtual bool finds_spans() const { return false; }  ///< of any member
+  /// Before members of the frame divide, while no break is unsettled, each at most once.
+  virtual void begin_divisions(std::span<const MemberCut>) {}
+  /// After all of them. Joints that came in are intact.
+  virtual void end_divisions(std::span<const MemberDivision>) {}
+
   virtual void remove_part(std::uint32_t part) = 0;
   /// More live load on every slab, N/m².
   virtual void add_load(double more) = 0;

@@ -286,7 +286,12 @@ void FrameSolver::Impl::break_joints(std::span<const std::uint32_t> joints) {
 }
 
 void FrameSolver::remove_parts(std::span<const std::uint32_t> parts) {
-  std::vector<std::uint32_t> joints;
+  take_out({}, parts);
+}
+
+void FrameSolver::take_out(std::span<const std::uint32_t> also,
+                           std::span<const std::uint32_t> parts) {
+  std::vector<std::uint32_t> joints(also.begin(), also.end());
   for (const std::uint32_t part : parts) impl_->gone[part] = 1;
   for (std::uint32_t j = 0; j < impl_->frame.joints.size(); ++j) {
     const FrameJoint& joint = impl_->frame.joints[j];

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "sim/block_factor.hpp"
+#include "sim/beam_element.hpp"
 #include "sim/frame.hpp"
+#include "sim/member_span.hpp"
 #include "sim/panel_element.hpp"
 
 namespace sunder {
@@ -85,6 +87,8 @@ class FrameSolver {
   void break_joints(std::span<const std::uint32_t> joints);
   /// Parts leave the model altogether, with all their joints (they fell off, or were removed).
   void remove_parts(std::span<const std::uint32_t> parts);
+  void take_out(std::span<const std::uint32_t> joints,
+                std::span<const std::uint32_t> parts);  ///< both at once
   /// So much is left of a slab or wall panel, kg.
   void set_plate_mass(std::uint32_t part, double mass);
   /// Slabs and walls become other elements of the stiffness. What they put on a node passes no
@@ -126,6 +130,14 @@ class FrameSolver {
   Vec3 reaction(std::uint32_t joint) const;  ///< of a joint to the ground, force on the part, N
   Vec3 reaction_moment(std::uint32_t joint) const;  ///< about the node, N m
   double axial(std::uint32_t member) const;         ///< mean, tension positive, N
+  /// What an elastic member carries between its ends, without what panels on its edges ask of it.
+  /// False: it hangs as a rigid cantilever, or carries nothing.
+  bool find_span(std::uint32_t member, MemberSpan& span) const;
+  /// Displacement and rotation (with no loads: their speeds) of a place on an elastic member whose
+  /// nodes move so: in balance with what of the last loads is on it, m from its start.
+  enum class OnMember : std::uint8_t { nothing, weight, all };
+  Six motion_within(std::uint32_t member, double along, std::span<const double> motion,
+                    OnMember loads) const;
   /// |K u − f| / |f|, largest norm; printed in every report. In wrecks whose linear displacements
   /// reach kilometres no less than the rounding of u leaves: some 1e-12 per metre.
   double residual() const;

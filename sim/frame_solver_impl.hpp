@@ -11,6 +11,7 @@
 #include "sim/frame_links.hpp"
 #include "sim/frame_solver.hpp"
 #include "sim/member_response.hpp"
+#include "sim/member_span.hpp"
 #include "sim/plate_support.hpp"
 
 namespace sunder {
@@ -163,9 +164,12 @@ struct FrameSolver::Impl {
   // frame_loads.cpp: from loads to nodal forces.
   void collect(const FrameLoads& loads, std::span<double> f);
   Twelve held_under(std::uint32_t m, const BeamLoad& load) const;
+  BeamLoad::Point point_on(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) const;
   Twelve held_at(std::uint32_t m, Vec3 point, Vec3 force, Vec3 moment) const;
   void add_load(std::uint32_t m, const BeamLoad& load);
   const ContactLoads& contacts_of(const FrameLoads& loads);
+  std::vector<std::pair<std::uint32_t, JointLoad>> shares_of(
+      std::uint32_t plate, const FrameLoads::OnPart& contact) const;
   void share_contact(std::uint32_t plate, const FrameLoads::OnPart& contact);
   void lay_live(const std::vector<double>& live);
   void add_field(std::uint32_t m, const MassField& field);
@@ -186,6 +190,19 @@ struct FrameSolver::Impl {
   void unlay();
   double work_on_elastic(const FrameLoads& loads);
   bool carries(std::span<const double> motion, const FrameLoads& loads) const;
+
+  // frame_spans.cpp: members between their ends.
+  struct PointLoad {
+    std::uint32_t member = 0;
+    BeamLoad::Point point;
+    bool by_plate = false;  ///< a slab or wall passes it on
+  };
+  void list_points();
+  std::vector<PointLoad> points_of(std::uint32_t m, bool with_contacts);
+  Vec3 pull_at(std::uint32_t m, Vec3 point) const;
+  bool find_span(std::uint32_t m, MemberSpan& span);
+  Six motion_within(std::uint32_t m, double along, std::span<const double> motion,
+                    OnMember loads);
 
   // frame_solver.cpp: breaking, and from displacements to forces.
   void break_joints(std::span<const std::uint32_t> joints);
@@ -243,6 +260,8 @@ struct FrameSolver::Impl {
   Weight weight;
   Laid laid;
   ContactLoads contact_loads;
+  std::vector<PointLoad> points;  ///< contacts of `laid`, by member, if they are known
+  bool points_known = false;
   std::vector<double> f, u;
   std::vector<double> stiff;         ///< stiffness × u
   std::vector<double> rest, before;  ///< of the refinement

@@ -112,6 +112,11 @@ BlockChange bar_between(std::uint32_t a, std::uint32_t b, Vec3 along, double sti
   return bar;
 }
 
+/// A beam that divided does not any more.
+bool joins(const FrameMember& member, std::uint32_t a, std::uint32_t b) {
+  return (member.from == a && member.to == b) || (member.from == b && member.to == a);
+}
+
 /// Without the rows of ends that are no solver nodes.
 BlockChange between(std::array<std::uint32_t, 2> node, const Matrix12& matrix) {
   const bool first = node[0] < kFixed, second = node[1] < kFixed;
@@ -313,13 +318,14 @@ void FrameSolver::Impl::renew_diaphragm(std::uint32_t slab) {
   std::array<std::uint32_t, 4> node{};
   diaphragm.active = true;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (corners.beams[i] == kNoPart) {
+    if (plates[slab].joint_count < 4 || corners.beams[i] == kNoPart) {
       diaphragm.active = false;
       break;
     }
     const FrameMember& beam = frame.members[corners.beams[i]];
     const Member& member = members[corners.beams[i]];
-    diaphragm.active &= plates[slab].carries[i] && member.role == Role::elastic &&
+    diaphragm.active &= plates[slab].carries[i] != 0 && member.role == Role::elastic &&
+                        joins(beam, corners.nodes[i], corners.nodes[(i + 1) % 4]) &&
                         links.end(corners.beams[i], 0).held && links.end(corners.beams[i], 1).held;
     node[i] = member.node[beam.from == corners.nodes[i] ? 0 : 1];
   }

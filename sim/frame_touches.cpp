@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sim/divided_members.hpp"
+
 namespace sunder {
 namespace {
 
@@ -71,6 +73,38 @@ Vec3 FrameTouches::end(std::uint32_t part) {
   const Vec3 back = touch.owed - (last_dt_ / 2) * (touch.before + touch.force);
   forget(part);
   return back;
+}
+
+void FrameTouches::make_room(std::uint32_t first, std::uint32_t count) {
+  of_.insert(of_.begin() + first, count, {});
+  listed_.insert(listed_.begin() + first, count, 0);
+  for (std::uint32_t& part : list_) part = moved_up(part, first, count);
+  for (std::uint32_t& part : active_) part = moved_up(part, first, count);
+}
+
+void FrameTouches::divide(std::uint32_t part, std::uint32_t new_part, double share) {
+  if (listed_[part] == 0 || share == 0) return;
+  FrameTouch& old = of_[part];
+  const auto scaled = [&old](double by) {
+    FrameTouch touch = old;
+    touch.impulse = by * old.impulse;
+    touch.size = by * old.size;
+    touch.weighted = by * old.weighted;
+    touch.force = by * old.force;
+    touch.before = by * old.before;
+    touch.owed = by * old.owed;
+    return touch;
+  };
+  of_[new_part] = scaled(share);
+  list_.push_back(new_part);
+  listed_[new_part] = 1;
+  if (share == 1) {
+    forget(part);
+  } else {
+    old = scaled(1 - share);
+  }
+  std::ranges::sort(list_);
+  list_active();
 }
 
 void FrameTouches::forget(std::uint32_t part) {

@@ -43,6 +43,10 @@ class FrameTouches {
   /// Nothing touches it any more. Returns the impulse that was not passed on.
   Vec3 end(std::uint32_t part);
   void forget(std::uint32_t part);
+  /// Parts from `first` on have numbers higher by `count` now.
+  void make_room(std::uint32_t first, std::uint32_t count);
+  /// The new part takes this share of what touches the other one.
+  void divide(std::uint32_t part, std::uint32_t new_part, double share);
 
  private:
   void list_active();

@@ -121,6 +121,7 @@ void FrameSolver::Impl::lay(const FrameLoads& loads) {
     laid.weight = true;
   }
   laid.loads = loads;
+  points_known = false;
   laid.members.clear();
   laid.joints.clear();
   const ContactLoads& contacts = contacts_of(loads);

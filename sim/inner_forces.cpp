@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/divided_members.hpp"
+
 namespace sunder {
 namespace {
 
@@ -163,6 +165,17 @@ JointLoad InnerForces::load(std::uint32_t j) const {
   const State& state = state_[bodies_.piece_of(scene_.frame.joints[j].a)];
   if (!state.is_loaded) return {};
   return state.model->solver->joint_load(state.model->sub.joint(j));
+}
+
+bool InnerForces::find_span(std::uint32_t member, MemberSpan& span) const {
+  const State& state = state_[bodies_.piece_of(member)];
+  return state.is_loaded && state.model->solver->find_span(state.model->sub.part(member), span);
+}
+
+void InnerForces::make_room(std::uint32_t first, std::uint32_t count) {
+  for (State& state : state_)
+    if (state.model)
+      for (std::uint32_t& part : state.model->sub.parts) part = moved_up(part, first, count);
 }
 
 SolveCounts InnerForces::solves() const {

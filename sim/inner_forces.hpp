@@ -28,6 +28,10 @@ class InnerForces {
   void start(std::size_t first_new, std::span<const std::uint32_t> old,
              std::span<const std::uint32_t> broken, const FrameTouches& touches);
   JointLoad load(std::uint32_t joint) const;  ///< of an intact one inside a piece
+  bool find_span(std::uint32_t member, MemberSpan& span) const;  ///< of a loose one
+  /// Parts from `first` on have numbers higher by `count` now.
+  void make_room(std::uint32_t first, std::uint32_t count);
+  void forget(std::uint32_t piece) { drop_model(state_[piece]); }  ///< it has other parts now
   bool is_live(std::uint32_t piece) const { return state_[piece].is_live; }
   bool any_live() const { return !live_.empty(); }
   /// Parts of the pieces made last that their joints cannot hold.

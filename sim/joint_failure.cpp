@@ -42,11 +42,13 @@ void CollapseRun::break_overloaded() {
   read_loads(overloads);
   check_hits(failures);
   check_posts(overloads);
-  if (!breaks_) return give_way(broken_before);
-  if (motion_->redistributes()) keep_most_utilised(overloads);
+  if (!breaks_) return give_way(broken_before, {});
+  std::vector<Weak> weak = weak_members();
+  if (motion_->redistributes()) keep_most_utilised(overloads, weak);
   failures.insert(failures.end(), overloads.begin(), overloads.end());
   break_joints(std::move(failures));
-  give_way(broken_before);
+  give_way(broken_before, weak);
+  divide_members(weak);
   cascade();
 }
 
@@ -56,10 +58,12 @@ void CollapseRun::cascade() {
     std::vector<Failure> failures;
     read_loads(failures);
     check_posts(failures);
-    keep_most_utilised(failures);
+    std::vector<Weak> weak = weak_members();
+    keep_most_utilised(failures, weak);
     for (const std::uint32_t j : motion_->unheld_joints())
       failures.push_back({j, joints_[j].utilisation, "unheld", "balance", {}, true});
     break_joints(std::move(failures));
+    divide_members(weak);
   }
 }
 
@@ -76,23 +80,28 @@ void CollapseRun::crack_panels() {
     std::vector<Failure> overloads;
     read_loads(overloads);
     check_posts(overloads);
-    keep_most_utilised(overloads);
+    std::vector<Weak> weak = weak_members();
+    keep_most_utilised(overloads, weak);
     break_joints(std::move(overloads));
+    divide_members(weak);
     cascade();
     panels_->follow_frame();
   }
   panels_->follow_frame();
 }
 
-void CollapseRun::keep_most_utilised(std::vector<Failure>& failures) const {
+void CollapseRun::keep_most_utilised(std::vector<Failure>& failures,
+                                     std::vector<Weak>& weak) const {
   double most = 0;
   for (const Failure& failure : failures) most = std::max(most, failure.utilisation);
+  for (const Weak& each : weak) most = std::max(most, each.place.utilisation);
   std::erase_if(failures, [&](const Failure& f) { return f.utilisation < kTogether * most; });
+  std::erase_if(weak, [&](const Weak& w) { return w.place.utilisation < kTogether * most; });
 }
 
-/// What a projectile met stood as if fixed. If joints of it broke under the blow, or it ran ahead,
+/// What a projectile met stood as if fixed. If joints of it, or the part itself, broke under the blow, or it ran ahead,
 /// the projectile keeps what the frame did not take up of its momentum.
-void CollapseRun::give_way(std::size_t broken_before) {
+void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& weak) {
   if (!motion_->redistributes()) return;
   for (std::size_t i = 0; i < shots_.size(); ++i) {
     Shot& shot = shots_[i];
@@ -108,7 +117,7 @@ void CollapseRun::give_way(std::size_t broken_before) {
     shot.given = struck.empty() ? Vec3{} : shot.given + lost;
     Vec3 back;
     for (const std::uint32_t part : struck) {
-      const double share = borne_share(part, broken_before);
+      const double share = borne_share(part, broken_before, weak);
       if (share < 1 || motion_->borne(part) < 1) back = back + motion_->give_back(part, share);
     }
     if (back == Vec3{}) continue;
@@ -120,9 +129,12 @@ void CollapseRun::give_way(std::size_t broken_before) {
   }
 }
 
-/// By the utilisation at which its joints broke in this step; 1: none did.
-double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before) const {
+/// By the utilisation at which its joints, or it itself, broke in this step; 1: none did.
+double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before,
+                                const std::vector<Weak>& weak) const {
   double most = 1;
+  for (const Weak& each : weak)
+    if (each.member == part && is_brittle(each)) most = std::max(most, each.place.utilisation);
   for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
     const JointBreak& broken = result_.broken_joints[i];
     const FrameJoint& joint = frame_.joints[broken.joint];
@@ -231,7 +243,8 @@ Vec3 CollapseRun::place_of(std::uint32_t j) const {
   return motion_->pose(joint.a) * into(solid.axes, joint.point - solid.centre);
 }
 
-/// A projectile breaks the joints of what it touches that lie within its radius of the contact.
+/// A projectile breaks the joints of what it touches that lie within its radius of the contact, not
+/// the members themselves.
 void CollapseRun::check_hits(std::vector<Failure>& failures) {
   for (const Contact& contact : world_.contacts()) {
     for (std::uint32_t s = 0; s < shots_.size(); ++s) {
@@ -243,7 +256,7 @@ void CollapseRun::check_hits(std::vector<Failure>& failures) {
       if (!panels_ || !panels_->is_wall(part)) note_hit(contact, s, last_dt_);
       if (!scene_.rules.hit_breaks) continue;
       for (const std::uint32_t j : joints_of_[part]) {
-        if (!joints_[j].intact) continue;
+        if (!joints_[j].intact || is_inside(j)) continue;
         if (length(place_of(j) - contact.point) > scene_.projectiles[s].radius) continue;
         failures.push_back(
             {j, joints_[j].utilisation, "hit", scene_.projectiles[s].name, {}, true});

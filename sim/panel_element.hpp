@@ -13,8 +13,8 @@ namespace sunder {
 /// it twists nothing, and stands in the plane of its nodes. Weight, mass and contacts of the part
 /// stay on its carriers as without it.
 ///
-/// It takes part as long as every member along its edges is held at both ends and has its joint
-/// with the panel, and never again afterwards. It stores ½ qᵀ K q, q from `at_rest`.
+/// It takes part as long as every member along its edges is whole, held at both ends and has its
+/// joint with the panel, and never again afterwards. It stores ½ qᵀ K q, q from `at_rest`.
 struct PanelElement {
   std::uint32_t part = 0;
   std::array<std::uint32_t, 4> nodes{};  ///< of the frame: the corners, in order around

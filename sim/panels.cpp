@@ -9,6 +9,7 @@
 #include "fracture/recover.hpp"
 #include "meshing/error.hpp"
 #include "meshing/random.hpp"
+#include "sim/divided_members.hpp"
 #include "sim/part_pose.hpp"
 
 namespace sunder {
@@ -95,7 +96,8 @@ std::vector<Panels::Panel> Panels::panels_of(const Frame& frame,
     const Vec3 low{box.low.x, box.low.y, -solids[part].half_length};
     const Vec3 high{box.high.x, box.high.y, solids[part].half_length};
     const RigidWorld::Bounds bounds = bounds_of(pose_of(solids[part]), low, high);
-    Panel panel{.part = part, .pattern = pattern, .low = bounds.low, .high = bounds.high};
+    Panel panel{
+        .part = part, .pattern = pattern, .number = part, .low = bounds.low, .high = bounds.high};
     for (std::uint32_t j = 0; j < frame.joints.size(); ++j)
       if (frame.joints[j].a == part) panel.joints.push_back(j);
     panels.push_back(std::move(panel));
@@ -169,6 +171,17 @@ Vec3 Panels::gravity_in(const Pose& pose) const {
   return rotate(conjugate(pose.rotation), {0, -impact_.simulation.gravity, 0});
 }
 
+void Panels::make_room(std::uint32_t first, std::uint32_t count) {
+  panel_of_part_.insert(panel_of_part_.begin() + first, count, kNoPart);
+  for (Panel& panel : panels_) {
+    panel.part = moved_up(panel.part, first, count);
+    for (std::uint32_t j = 0; j < scene_.frame.joints.size(); ++j)
+      if (scene_.frame.joints[j].a == panel.part && host_.is_intact(j) &&
+          std::ranges::find(panel.joints, j) == panel.joints.end())
+        panel.joints.push_back(j);
+  }
+}
+
 void Panels::start() {
   // With `diaphragms` slabs have a stiffness in their plane already.
   const std::uint32_t first = scene_.simulation.diaphragms ? scene_.frame.wall_part(0) : 0;
@@ -187,7 +200,7 @@ void Panels::start() {
 
 /// So that a facade does not show one and the same pattern everywhere.
 std::uint64_t Panels::variant_of(const Panel& panel) const {
-  return random_bits(scene_.seed, panel.part, 0) % kVariants;
+  return random_bits(scene_.seed, panel.number, 0) % kVariants;
 }
 
 bool Panels::are_alike(const Panel& a, const Panel& b) const {

@@ -43,6 +43,8 @@ class Panels {
   void follow_shot(std::uint32_t shot, BodyId body, std::uint32_t track) {
     walls_.follow_shot(shot, body, track);
   }
+  /// Parts from `first` on have numbers higher by `count` now; the frame has more joints.
+  void make_room(std::uint32_t first, std::uint32_t count);
   /// Time 0: from now on they are elastic, without stress but that of their weight.
   void start();
   // A substep: prepare, next_arrival, the world's step, after_step, arrive.
@@ -77,6 +79,7 @@ class Panels {
   struct Panel {
     std::uint32_t part = 0;
     std::uint32_t pattern = 0;
+    std::uint32_t number = 0;              ///< its part's when the run began
     bool stands = false;                   ///< as a wall of chunks
     std::uint32_t present = 0;             ///< chunks that stood when the frame was last told
     std::array<std::uint32_t, 4> nodes{};  ///< of the frame, in the order of PanelCorners

@@ -13,6 +13,8 @@ PartLinks::PartLinks(const Frame& frame)
 }
 
 void PartLinks::list_again() {
+  intact_.resize(frame_.joints.size(), 1);
+  joints_of_.resize(frame_.part_count());
   for (std::vector<std::uint32_t>& list : joints_of_) list.clear();
   for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
     joints_of_[frame_.joints[j].a].push_back(j);
@@ -81,10 +83,8 @@ bool PartLinks::member_is_held(std::uint32_t member) const {
 bool PartLinks::plate_is_held(std::uint32_t part) const {
   PlateSupport plate;
   plate.part = part;
-  for (const std::uint32_t j : joints_of_[part]) {
-    plate.joints[plate.joint_count] = j;
-    plate.carries[plate.joint_count++] = intact_[j] != 0 && member_is_held(frame_.joints[j].b);
-  }
+  for (const std::uint32_t j : joints_of_[part])
+    plate.add_joint(j, intact_[j] != 0 && member_is_held(frame_.joints[j].b));
   settle(frame_, plate);
   return plate.rest != PlateSupport::Rest::none;
 }

@@ -14,7 +14,7 @@ class PartLinks {
  public:
   explicit PartLinks(const Frame& frame);
 
-  /// The frame's joints have other parts now. O(joints).
+  /// The frame's joints have other parts now, or there are more of both. O(joints).
   void list_again();
   void cut(std::uint32_t joint) { intact_[joint] = 0; }
   bool intact(std::uint32_t joint) const { return intact_[joint] != 0; }

@@ -4,6 +4,7 @@
 #include "sim/plate_support.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "sim/spin.hpp"
@@ -12,18 +13,21 @@ namespace sunder {
 namespace {
 
 constexpr double kInLine = 1e-9;  // least second moment of points across their line, by the whole
+constexpr double kNoShare = 1e-9;  // of a weight, that is rounding
 constexpr double kLoadGravity = 9.81;  // m/s² by which a live load becomes mass
 
-/// Σ r² 1 − r rᵀ.
-SymMat3 second_moments(std::span<const Vec3> arms) {
+/// Σ w (r² 1 − r rᵀ).
+SymMat3 second_moments(std::span<const Vec3> arms, std::span<const double> weights) {
   SymMat3 sum;
-  for (const Vec3 r : arms) {
-    sum.xx += r.y * r.y + r.z * r.z;
-    sum.yy += r.x * r.x + r.z * r.z;
-    sum.zz += r.x * r.x + r.y * r.y;
-    sum.xy -= r.x * r.y;
-    sum.xz -= r.x * r.z;
-    sum.yz -= r.y * r.z;
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    const Vec3 r = arms[i];
+    const double w = weights[i];
+    sum.xx += w * (r.y * r.y + r.z * r.z);
+    sum.yy += w * (r.x * r.x + r.z * r.z);
+    sum.zz += w * (r.x * r.x + r.y * r.y);
+    sum.xy -= w * (r.x * r.y);
+    sum.xz -= w * (r.x * r.z);
+    sum.yz -= w * (r.y * r.z);
   }
   return sum;
 }
@@ -43,19 +47,23 @@ bool in_line(std::span<const Vec3> arms) {
 }
 
 /// The moment that forces at the arms can balance, as b of b × r.
-Vec3 turn_for(std::span<const Vec3> arms, Vec3 moment) {
-  if (!in_line(arms)) return inverse(second_moments(arms)) * moment;
+Vec3 turn_for(std::span<const Vec3> arms, std::span<const double> weights, Vec3 moment) {
+  if (!in_line(arms)) return inverse(second_moments(arms, weights)) * moment;
   double whole = 0;
-  for (const Vec3 r : arms) whole += dot(r, r);
+  for (std::size_t i = 0; i < arms.size(); ++i) whole += weights[i] * dot(arms[i], arms[i]);
   const Vec3 along = longest(arms);
   if (whole == 0) return {};
   return 1 / whole * (moment - dot(moment, along) / dot(along, along) * along);
 }
 
-Vec3 centroid_of(std::span<const Vec3> points) {
+Vec3 centroid_of(std::span<const Vec3> points, std::span<const double> weights) {
   Vec3 sum;
-  for (const Vec3 p : points) sum = sum + p;
-  return 1 / static_cast<double>(points.size()) * sum;
+  double whole = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sum = sum + weights[i] * points[i];
+    whole += weights[i];
+  }
+  return 1 / whole * sum;
 }
 
 /// Of the bay in plan.
@@ -73,65 +81,91 @@ Vec3 bay_centre(const Frame& frame, const FrameSlab& slab) {
   return origin + 1 / twice * sum;
 }
 
-std::size_t carrying(const PlateSupport& plate) {
-  return static_cast<std::size_t>(std::ranges::count(plate.carries, true));
-}
-
+/// What is left of edges whose members divided must not be pulled down: there a slab tips over.
 void settle_slab(const Frame& frame, PlateSupport& plate) {
-  std::array<Vec3, 4> points, arms;
-  std::array<std::uint32_t, 4> which{};
-  std::size_t count = 0;
+  std::vector<Vec3> points, arms;
+  std::vector<double> weights;
+  std::vector<std::uint32_t> which;
+  std::uint32_t edges = 0;
+  bool is_whole = true;
   for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
-    if (!plate.carries[i]) continue;
-    which[count] = i;
-    points[count++] = frame.joints[plate.joints[i]].point;
+    const FrameJoint& joint = frame.joints[plate.joints[i]];
+    is_whole &= joint.share == 1;
+    if (plate.carries[i] == 0) continue;
+    edges |= 1u << joint.edge;
+    which.push_back(i);
+    points.push_back(joint.point);
+    weights.push_back(joint.share);
   }
-  if (count < 3) return;
-  const Vec3 middle = centroid_of({points.data(), count});
-  for (std::size_t i = 0; i < count; ++i) arms[i] = points[i] - middle;
-  if (in_line({arms.data(), count})) return;
-  const SharedForce shared = share_force({points.data(), count}, plate.centre, {0, 1, 0});
-  for (std::size_t i = 0; i < count; ++i) plate.share[which[i]] = shared.force[i].y;
+  if (std::popcount(edges) < 3) return;
+  const Vec3 middle = centroid_of(points, weights);
+  for (const Vec3 point : points) arms.push_back(point - middle);
+  if (in_line(arms)) return;
+  const SharedForce shared = share_force(points, plate.centre, {0, 1, 0}, weights);
+  const auto pulls = [](Vec3 force) { return force.y < -kNoShare; };
+  if (!is_whole && std::ranges::any_of(shared.force, pulls)) return;
+  for (std::size_t i = 0; i < which.size(); ++i) plate.share[which[i]] = shared.force[i].y;
   plate.rest = PlateSupport::Rest::lines;
 }
 
 void settle_wall(const Frame& frame, PlateSupport& plate) {
-  const FrameWall& wall = frame.walls[plate.part - frame.wall_part(0)];
-  const std::size_t count = carrying(plate);
+  const auto joint = [&](std::uint32_t i) -> const FrameJoint& {
+    return frame.joints[plate.joints[i]];
+  };
+  double whole = 0, lower = 0;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
+    if (plate.carries[i] == 0) continue;
+    ++count;
+    whole += joint(i).share;
+    if (joint(i).edge == 0) lower += joint(i).share;
+  }
   if (plate.on_ground) {
     if (count > 0) plate.rest = PlateSupport::Rest::ground;
     return;
   }
   if (count < 2) return;
   for (std::uint32_t i = 0; i < plate.joint_count; ++i) {
-    if (!plate.carries[i] || frame.joints[plate.joints[i]].b != wall.edges[0]) continue;
-    plate.share[i] = 1;
-    plate.rest = PlateSupport::Rest::lines;
-    return;
+    if (plate.carries[i] == 0) continue;
+    if (lower > 0) {
+      plate.share[i] = joint(i).edge == 0 ? joint(i).share / lower : 0;
+    } else {
+      plate.share[i] = joint(i).share / whole;
+    }
   }
-  for (std::uint32_t i = 0; i < plate.joint_count; ++i)
-    plate.share[i] = plate.carries[i] ? 1 / static_cast<double>(count) : 0;
-  plate.rest = PlateSupport::Rest::points;
+  plate.rest = lower > 0 ? PlateSupport::Rest::lines : PlateSupport::Rest::points;
 }
 
 }  // namespace
 
-SharedForce share_force(std::span<const Vec3> points, Vec3 at, Vec3 force) {
-  const double share = 1 / static_cast<double>(points.size());
-  const Vec3 middle = centroid_of(points);
-  std::array<Vec3, 4> arms;
-  for (std::size_t i = 0; i < points.size(); ++i) arms[i] = points[i] - middle;
-  const std::span<const Vec3> all(arms.data(), points.size());
+void PlateSupport::add_joint(std::uint32_t joint, bool does_carry) {
+  joints.push_back(joint);
+  carries.push_back(does_carry ? 1 : 0);
+  share.push_back(0);
+  ++joint_count;
+}
+
+SharedForce share_force(std::span<const Vec3> points, Vec3 at, Vec3 force,
+                        std::span<const double> weights) {
+  const std::vector<double> ones(weights.empty() ? points.size() : 0, 1.0);
+  if (weights.empty()) weights = ones;
+  const Vec3 middle = centroid_of(points, weights);
+  double whole = 0;
+  std::vector<Vec3> arms;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    arms.push_back(points[i] - middle);
+    whole += weights[i];
+  }
   const Vec3 moment = cross(at - middle, force);
-  const Vec3 turn = turn_for(all, moment);
+  const Vec3 turn = turn_for(arms, weights, moment);
   SharedForce result;
   Vec3 rest = moment;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 couple = cross(turn, arms[i]);
-    result.force[i] = share * force + couple;
+    const Vec3 couple = weights[i] * cross(turn, arms[i]);
+    result.force.push_back(weights[i] / whole * force + couple);
     rest = rest - cross(arms[i], couple);
   }
-  result.torque = share * rest;
+  result.torque = 1 / whole * rest;
   return result;
 }
 
@@ -156,14 +190,13 @@ std::vector<PlateSupport> plates_of(const Frame& frame, std::span<const double> 
   }
   for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
     if (frame.joints[j].a < first) continue;
-    PlateSupport& plate = plates[frame.joints[j].a - first];
-    plate.joints[plate.joint_count++] = j;
+    plates[frame.joints[j].a - first].add_joint(j, false);
   }
   return plates;
 }
 
 void settle(const Frame& frame, PlateSupport& plate) {
-  plate.share = {};
+  std::ranges::fill(plate.share, 0.0);
   plate.rest = PlateSupport::Rest::none;
   if (plate.part < frame.wall_part(0)) {
     settle_slab(frame, plate);

@@ -10,12 +10,14 @@ namespace sunder {
 
 /// A force on a rigid part shared by the points that hold it: those forces of least squares that
 /// balance force and moment. Where the points lie in line (or are one), what moment they cannot
-/// take goes to each in equal parts as a torque. At most four points.
+/// take goes to each in equal parts as a torque. A point may count as part of one: `weights`, none:
+/// 1 each.
 struct SharedForce {
-  std::array<Vec3, 4> force{};
-  Vec3 torque;  ///< at each point
+  std::vector<Vec3> force;
+  Vec3 torque;  ///< at each point of weight 1
 };
-SharedForce share_force(std::span<const Vec3> points, Vec3 at, Vec3 force);
+SharedForce share_force(std::span<const Vec3> points, Vec3 at, Vec3 force,
+                        std::span<const double> weights = {});
 
 /// How a slab or wall rests on the members around it as its joints break.
 struct PlateSupport {
@@ -26,7 +28,7 @@ struct PlateSupport {
     none     ///< too few joints: loose
   };
   std::uint32_t part = 0;
-  std::array<std::uint32_t, 4> joints{};  ///< all of the part's, intact or not
+  std::vector<std::uint32_t> joints;  ///< all of the part's, intact or not
   std::uint32_t joint_count = 0;
   double mass = 0;         ///< kg
   double area = 0;         ///< of slabs, m²: takes added live load; of walls 0
@@ -34,8 +36,10 @@ struct PlateSupport {
   bool on_ground = false;  ///< a wall of the ground floor
 
   Rest rest = Rest::none;
-  std::array<double, 4> share{};  ///< of the weight, per joint; 0 where it does not carry
-  std::array<bool, 4> carries{};  ///< joints that carry
+  std::vector<double> share;          ///< of the weight, per joint; 0 where it does not carry
+  std::vector<std::uint8_t> carries;  ///< joints that carry
+
+  void add_joint(std::uint32_t joint, bool does_carry);
 };
 
 /// Slabs and walls with their joints; `rest` is not yet known. Walls weigh this, kg, by number, or,

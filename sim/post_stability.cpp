@@ -23,19 +23,23 @@ std::uint32_t other_part(const FrameJoint& joint, std::uint32_t part) {
 }  // namespace
 
 PostStability::PostStability(const Frame& frame, const std::string& rule)
-    : frame_(frame),
-      rule_(rule),
-      intact_(frame.joints.size(), 1),
-      joints_at_(frame.nodes.size()),
-      joints_of_(frame.members.size()),
-      resistance_(frame.members.size(), kUnknown) {
-  for (std::uint32_t m = 0; m < frame.members.size(); ++m)
-    if (frame.members[m].kind == FrameMember::Kind::post) posts_.push_back(m);
-  for (std::uint32_t j = 0; j < frame.joints.size(); ++j) {
-    const FrameJoint& joint = frame.joints[j];
+    : frame_(frame), rule_(rule) {
+  list_again();
+}
+
+void PostStability::list_again() {
+  intact_.resize(frame_.joints.size(), 1);
+  joints_at_.assign(frame_.nodes.size(), {});
+  joints_of_.assign(frame_.members.size(), {});
+  resistance_.assign(frame_.members.size(), kUnknown);
+  posts_.clear();
+  for (std::uint32_t m = 0; m < frame_.members.size(); ++m)
+    if (frame_.members[m].kind == FrameMember::Kind::post) posts_.push_back(m);
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
+    const FrameJoint& joint = frame_.joints[j];
     if (joint.node != kNoPart) joints_at_[joint.node].push_back(j);
     for (const std::uint32_t part : {joint.a, joint.b})
-      if (part < frame.members.size()) joints_of_[part].push_back(j);
+      if (part < frame_.members.size()) joints_of_[part].push_back(j);
   }
 }
 
@@ -68,8 +72,16 @@ void PostStability::forget_column(std::uint32_t node) {
   }
 }
 
-/// Whether a beam's end at a node is fixed to it, and to a post or the ground there.
+/// Whether a beam's end at a node is fixed to it, and to a post or the ground there; where it has
+/// divided, whether the other part's end is.
 bool PostStability::is_held(std::uint32_t beam, std::uint32_t node) const {
+  if (!joints_at_[node].empty() &&
+      frame_.joints[joints_at_[node].front()].kind == FrameJoint::Kind::inside) {
+    const std::uint32_t inside = joints_at_[node].front();
+    const std::uint32_t other = other_part(frame_.joints[inside], beam);
+    const FrameMember& member = frame_.members[other];
+    return intact_[inside] != 0 && is_held(other, member.from == node ? member.to : member.from);
+  }
   bool fixed = true, stands = frame_.nodes[node].support;
   for (const std::uint32_t j : joints_at_[node]) {
     const FrameJoint& joint = frame_.joints[j];

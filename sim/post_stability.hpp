@@ -22,6 +22,8 @@ class PostStability {
   PostStability(const Frame& frame, const std::string& rule);
 
   void break_joint(std::uint32_t joint);
+  /// The frame has other parts, nodes and joints now; new joints are intact. O(joints).
+  void list_again();
 
   /// Between what braces it, times the factors of its ends: 1 for two held ends, 2 for one;
   /// infinity for a piece that nothing holds.

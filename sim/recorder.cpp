@@ -37,6 +37,15 @@ void Recorder::add_pose(std::uint32_t track, const Pose& pose) {
     mix(value);
 }
 
+std::uint32_t Recorder::divide_track(std::uint32_t track, const Pose& first, const Pose& second) {
+  Track other = recording_.tracks[track];
+  for (Pose& pose : other.poses) pose = pose * second;
+  for (Pose& pose : recording_.tracks[track].poses) pose = pose * first;
+  recording_.tracks.push_back(std::move(other));
+  mix(std::uint64_t{track});
+  return static_cast<std::uint32_t>(recording_.tracks.size() - 1);
+}
+
 void Recorder::add_event(const BreakEvent& event) {
   recording_.events.push_back(event);
   mix(event.time);

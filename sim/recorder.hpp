@@ -16,6 +16,9 @@ class Recorder {
   /// The end of a step; then every moving body's pose.
   void add_time(double time);
   void add_pose(std::uint32_t track, const Pose& pose);
+  /// What moved along a track is two from now on, which stood there in its frame from the start.
+  /// Returns the track of the second one.
+  std::uint32_t divide_track(std::uint32_t track, const Pose& first, const Pose& second);
   void add_event(const BreakEvent& event);
   void add_broken_joint(std::uint32_t joint, double time);
 

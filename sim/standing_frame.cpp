@@ -77,9 +77,10 @@ void StandingFrame::set_panels(std::vector<PanelElement> elements) {
 }
 
 std::optional<Twelve> StandingFrame::panel_motion(std::uint32_t part) const {
-  if (has_panels_) return in_use().panel_motion(part);
+  const std::uint32_t known = known_part(part);
+  if (has_panels_) return in_use().panel_motion(known);
   const auto number = [](const Panel& panel) { return panel.element.part; };
-  if (std::ranges::binary_search(panels_, part, {}, number)) return Twelve{};
+  if (std::ranges::binary_search(panels_, known, {}, number)) return Twelve{};
   return {};
 }
 
@@ -149,8 +150,14 @@ FrameLoads StandingFrame::shaking() const {
   return motion;
 }
 
+/// The number that the solvers know a part of the scene's frame by.
+std::uint32_t StandingFrame::known_part(std::uint32_t part) const {
+  return part < frame_.slab_part(0) ? part : part - members_since_;
+}
+
 void StandingFrame::set_contacts(std::vector<FrameLoads::OnPart> contacts) {
   contacts_ = std::move(contacts);
+  for (FrameLoads::OnPart& contact : contacts_) contact.part = known_part(contact.part);
 }
 
 void StandingFrame::add_live(double more) {
@@ -181,6 +188,14 @@ void StandingFrame::bring_up_to_date(Solver& solver) const {
   solver.masses = masses_.size();
   solver.joints = joints.size();
   solver.parts = parts.size();
+}
+
+/// One that knows of nothing yet: all at once, so that on the way no pieces hang on nothing.
+void StandingFrame::tell_all(Solver& solver) const {
+  solver.frame->take_out(broken_, gone_);
+  solver.joints = broken_.size();
+  solver.parts = gone_.size();
+  bring_up_to_date(solver);
 }
 
 /// With the hinges that are left to it.
@@ -233,7 +248,7 @@ void StandingFrame::make_dynamic() {
   } else {
     dynamic_ = {std::make_unique<FrameSolver>(frame_, dynamic_params(), *static_.frame)};
   }
-  bring_up_to_date(dynamic_);
+  tell_all(dynamic_);
   dynamic_.frame->set_hinges(static_.frame->hinges());
   v_.assign(dynamic_.frame->freedoms(), 0);
   for (std::vector<double>* each :
@@ -244,19 +259,21 @@ void StandingFrame::make_dynamic() {
 void StandingFrame::take_out(std::span<const std::uint32_t> joints,
                              std::span<const std::uint32_t> parts) {
   broken_.insert(broken_.end(), joints.begin(), joints.end());
-  gone_.insert(gone_.end(), parts.begin(), parts.end());
+  for (const std::uint32_t part : parts) gone_.push_back(known_part(part));
   if (in_time()) bring_up_to_date(dynamic_);
 }
 
 void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
-  masses_.emplace_back(part, mass);
+  masses_.emplace_back(known_part(part), mass);
   if (in_time()) bring_up_to_date(dynamic_);
 }
 
 void StandingFrame::change_panels(std::span<const PanelStiffness> changed) {
   for (const PanelStiffness& each : changed) {
-    const auto panel = std::ranges::lower_bound(panels_, each.part, {},
+    const std::uint32_t known = known_part(each.part);
+    const auto panel = std::ranges::lower_bound(panels_, known, {},
                                                 [](const Panel& p) { return p.element.part; });
+    if (panel == panels_.end() || panel->element.part != known) continue;  // it lost an edge
     panel->element.stiffness = each.stiffness;
     ++panel->set;
   }
@@ -273,22 +290,34 @@ void StandingFrame::carry_on() {
   is_live_ = true;
 }
 
+std::vector<std::uint32_t> StandingFrame::loose_parts() const {
+  std::vector<std::uint32_t> parts = in_use().loose_parts();
+  for (std::uint32_t& part : parts) part = moved_up(part, frame_.slab_part(0), members_since_);
+  return parts;
+}
+
 /// Happens at time 0.
 void StandingFrame::rejoin() {
   const std::vector<Hinge> hinges = stiff_hinges();
   const Solver old = std::move(dynamic_);
   const std::vector<double> u = u_, v = v_;
   const bool rang = in_time();
+  frame_ = scene_.frame;
+  start_anew(hinges);
+  if (rang) take_state(*old.frame, u, v);
+}
+
+/// At rest, with solvers made anew.
+void StandingFrame::start_anew(const std::vector<Hinge>& hinges) {
   rings_ = has_rung_ = false;
   has_panels_ = !panels_.empty();
   FrameSolverParams params = static_params();
   params.p_delta &= !is_first_order_;
   static_ = {std::make_unique<FrameSolver>(frame_, params)};
-  bring_up_to_date(static_);
+  tell_all(static_);
   static_.frame->set_hinges(hinges);
   hinges_ = static_.frame->hinges();
   solve_static();
-  if (rang) take_state(*old.frame, u, v);
 }
 
 /// Of a solver of the same nodes in another order.

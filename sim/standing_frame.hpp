@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/collapse.hpp"
+#include "sim/divided_members.hpp"
 #include "sim/frame_motion.hpp"
 #include "sim/frame_solver.hpp"
 
@@ -36,7 +37,7 @@ class StandingFrame {
 
   // Loads, for the next step or carry_on().
   void set_time(double now) { now_ = now; }
-  void set_contacts(std::vector<FrameLoads::OnPart> contacts);
+  void set_contacts(std::vector<FrameLoads::OnPart> contacts);  ///< by part of the scene's frame
   void add_live(double more);  ///< N/m² on all slabs; energy that it brings is not booked
 
   // Time.
@@ -65,7 +66,16 @@ class StandingFrame {
   void stand_on();  ///< in time: forces follow the displacements and contacts anew
   /// The frame's joints have other parts: solvers are made anew, the state is the same.
   void rejoin();
-  std::vector<std::uint32_t> loose_parts() const { return in_use().loose_parts(); }
+  // Members divide: standing_division.cpp.
+  bool find_span(std::uint32_t member, MemberSpan& span) const {
+    return in_use().find_span(member, span);
+  }
+  void begin_divisions(std::span<const MemberCut> cuts);  ///< the frame is about to change
+  /// The frame has so many members more, and what stands these nodes, in the order of the cuts: then
+  /// solvers are made anew, the state is the same.
+  void end_divisions(std::uint32_t count, std::span<const std::uint32_t> nodes,
+                     std::vector<FrameLoads::OnPart> contacts);
+  std::vector<std::uint32_t> loose_parts() const;
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
@@ -114,6 +124,12 @@ class StandingFrame {
     MotionLosses losses;
     double given = 0;
   };
+  /// Before members divide.
+  struct Undivided {
+    std::vector<Hinge> hinges;
+    bool in_time = false;
+    std::vector<Six> u, v;  ///< of the places where they divide
+  };
   FrameSolver& in_use() const { return in_time() ? *dynamic_.frame : *static_.frame; }
   /// Books are kept in the dynamic solver from the first time that the frame rings.
   FrameSolver& ledger() const { return has_rung_ ? *dynamic_.frame : *static_.frame; }
@@ -122,6 +138,7 @@ class StandingFrame {
   FrameLoads shaking() const;
   Vec3 gravity() const;
   void bring_up_to_date(Solver& solver) const;
+  void tell_all(Solver& solver) const;
   void solve_static();
   void solve_anew();
   void balance();
@@ -135,6 +152,8 @@ class StandingFrame {
   void begin_dynamic();
   void take_in_panels();
   void make_dynamic();
+  void start_anew(const std::vector<Hinge>& hinges);
+  std::uint32_t known_part(std::uint32_t part) const;
   void move_on();
   void find_momentum() const;
   void account_for_damping();
@@ -146,7 +165,8 @@ class StandingFrame {
   void hold_hinges(std::vector<Hinge> hinges);
 
   const CollapseScene& scene_;
-  const Frame& frame_;
+  Frame frame_;                     ///< as the solvers know it
+  std::uint32_t members_since_ = 0;  ///< of the scene's frame: they came in where nothing stands
   Solver static_, dynamic_;
   std::atomic<bool> stops_ = false;                  ///< nobody waits for `ahead_` any more
   std::future<std::unique_ptr<FrameSolver>> ahead_;  ///< of the dynamic one; reads the static one
@@ -163,6 +183,7 @@ class StandingFrame {
   std::vector<Hinge> hinges_;   ///< by joint
   FrameLoads pushed_, shaken_;  ///< contacts and motion of the ground at the last loads
   Moment before_step_;
+  Undivided undivided_;
   bool rings_ = false, has_rung_ = false, is_live_ = false, can_step_again_ = false;
   bool is_settled_ = false, is_first_order_ = false;
   double live_ = 0, now_ = 0, quiet_for_ = 0;

@@ -42,7 +42,7 @@ CollapseResult sample_result() {
   r.panels = 40, r.panels_meshed = 41, r.panels_broken = 42, r.panel_solves = 43;
   r.chunks = 44, r.chunks_freed = 45, r.chunks_split = 46, r.broken_bonds = 47;
   r.crack_area = 48.5, r.panels_not_meshed = 49, r.panel_solves_skipped = 50;
-  r.bodies = 31, r.merged_bodies = 9, r.parts_freed = 32, r.broken_at_rest = 1;
+  r.bodies = 31, r.merged_bodies = 9, r.parts_freed = 32, r.broken_at_rest = 1, r.members_divided = 3;
   r.buckles = {{0.625, "at a node"}};
   r.broken_joints = {{2, -0.25, 1.125, "strength", "linear", "My"},
                      {0, 0.5, 0, "hit", "ball", ""},
@@ -108,7 +108,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
       {"joint": "beam@post_a", "time": 0.125, "utilisation": 1.25, "rotation": 0.03125}],
     "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0,
                   "unheld": 0, "panel": 0},
-    "broken_at_rest": 1, "buckles": [{"time": 0.625, "what": "at a node"}], "broken_bonds": 47,
+    "broken_at_rest": 1, "members_divided": 3, "buckles": [{"time": 0.625, "what": "at a node"}], "broken_bonds": 47,
     "crack_area": 48.5, "max_utilisation": 4.75,
     "utilisation_at_rest": 0.375, "first_failure_load": 12500, "joint_gap": 0.0005,
     "sag": {"mean": 0.001, "max": 0.002, "node": "top_a", "end": 0.003},
