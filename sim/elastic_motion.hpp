@@ -53,6 +53,7 @@ class ElasticMotion final : public FrameMotion {
     standing_.set_panels(std::move(elements));
   }
   void change_panels(std::span<const PanelStiffness> changed) override;
+  Vec3 displacement(std::uint32_t node) const override { return standing_.displacement(node); }
   std::optional<Twelve> panel_motion(std::uint32_t part) const override {
     return standing_.panel_motion(part);
   }

@@ -90,6 +90,8 @@ class FrameMotion {
   virtual void take_shape(std::uint32_t part, BodyId body) = 0;
   /// So much is left of a part that stands, kg.
   virtual void set_mass(std::uint32_t part, double mass) = 0;
+  /// How a node of the frame that stands moved from where it was drawn, m.
+  virtual Vec3 displacement(std::uint32_t) const { return {}; }
   /// Slabs and walls that are elastic from now, at rest, on.
   virtual void set_panels(std::vector<PanelElement>) {}
   /// Some of them are softer now.

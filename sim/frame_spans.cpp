@@ -89,11 +89,7 @@ bool FrameSolver::Impl::find_span(std::uint32_t m, MemberSpan& span) {
   const Member& member = members[m];
   if (member.role != Role::elastic) return false;
   const Axes& axes = member.response.axes;
-  Vec3 force = three(forces[m], 0), moment = three(forces[m], 3);
-  if (!on_edges.empty()) {
-    force = force - three(on_edges[m], 0);
-    moment = moment - three(on_edges[m], 3);
-  }
+  const Vec3 force = three(forces[m], 0), moment = three(forces[m], 3);
   span.length = member.response.length;
   span.start = {-1 * into(axes, force), -1 * into(axes, moment)};
   span.load_a = line_mass(m) * into(axes, pull_at(m, member.at(0)));
