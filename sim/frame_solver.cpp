@@ -308,6 +308,26 @@ std::vector<std::uint32_t> FrameSolver::loose_parts() const {
   return parts;
 }
 
+std::vector<std::uint32_t> FrameSolver::bridging_joints() const {
+  std::vector<std::uint32_t> joints;
+  if (impl_->pieces.empty()) return joints;
+  const auto piece_at = [&](std::uint32_t j) {
+    return impl_->piece_of(impl_->members[impl_->frame.joints[j].b]);
+  };
+  for (const PlateSupport& plate : impl_->plates) {
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t i = 0; i < plate.joint_count; ++i)
+      if (plate.carries[i]) own.push_back(plate.joints[i]);
+    const bool is_on_one = std::ranges::all_of(
+        own, [&](std::uint32_t j) { return piece_at(j) == piece_at(own.front()); });
+    if (is_on_one && !plate.on_ground) continue;
+    std::ranges::copy_if(own, std::back_inserter(joints),
+                         [&](std::uint32_t j) { return piece_at(j) != Impl::kNone; });
+  }
+  std::ranges::sort(joints);
+  return joints;
+}
+
 std::vector<Mechanism> FrameSolver::mechanisms() const {
   std::vector<Mechanism> result;
   for (const Impl::Restraint& held : impl_->held)

@@ -30,6 +30,7 @@ struct FrameSolver::Impl {
   Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters, const Impl* like);
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  static constexpr double kLoadGravity = 9.81;  ///< m/s² by which a live load becomes mass
   /// elastic: an element of the stiffness. hanging: a rigid cantilever at its held end.
   enum class Role : std::uint8_t { elastic, hanging, loose, removed };
   struct PointMass {
@@ -148,6 +149,12 @@ struct FrameSolver::Impl {
   void turn_hinges();
   double strain_of_hinges() const;
   double work_of(const FrameLoads& loads);
+
+  // frame_ways.cpp: how far masses move.
+  template <class Held>
+  static std::array<Twelve, 3> by_axis(const Held& held_nodes);
+  std::vector<MassWay> mass_ways(std::span<const double> motion, const std::vector<double>& live,
+                                 bool bends) const;
 
   // frame_panels.cpp: slabs that are elastic.
   void set_panel(std::uint32_t part, const PanelElement& element);

@@ -61,6 +61,7 @@ class StandingFrame {
   /// The frame's joints have other parts: solvers are made anew, the state is the same.
   void rejoin();
   std::vector<std::uint32_t> loose_parts() const { return in_use().loose_parts(); }
+  std::vector<std::uint32_t> bridging_joints() const { return in_use().bridging_joints(); }
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
@@ -77,6 +78,9 @@ class StandingFrame {
     Vec3 velocity, spin;
   };
   Motion motion(std::uint32_t node) const;
+  /// By part; of displacements with live loads, of velocities (in time) without.
+  std::vector<FrameSolver::MassWay> ways() const;
+  std::vector<FrameSolver::MassWay> speeds() const;
 
   double kinetic() const;    ///< J
   double strain() const;     ///< J
@@ -113,6 +117,7 @@ class StandingFrame {
   void solve_static();
   void solve_anew();
   void balance();
+  double solve_pushed();
   FrameSolverParams dynamic_params() const;
   bool may_ring() const;
   void make_dynamic();

@@ -239,6 +239,18 @@ TEST(PlasticHinge, EnergyIsAccountedForToRounding) {
   EXPECT_LT(std::fabs(r.energy.numerical), 1e-9 * std::fabs(r.energy_in));
 }
 
+TEST(PlasticHinge, EnergyOfAFrameInBalanceIsAccountedForToRounding) {
+  CollapseScene scene = post_removal(0.1, 1);
+  scene.scenario.remove.clear();
+  scene.scenario.load_rate = 20000;
+  scene.simulation.quasi_static = true;
+  const CollapseResult r = simulate_collapse(scene);
+  EXPECT_FALSE(r.yielded_joints.empty());
+  EXPECT_GT(r.plastic, 0);
+  EXPECT_GE(r.damping, 0);
+  EXPECT_LT(std::fabs(r.energy.numerical), 1e-9 * std::fabs(r.energy_in));
+}
+
 TEST(PlasticHinge, GivesTheSameBitsTwice) {
   const CollapseResult a = simulate_collapse(post_removal(0.1));
   const CollapseResult b = simulate_collapse(post_removal(0.1));
