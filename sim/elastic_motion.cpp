@@ -56,7 +56,7 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
     standing_.begin_step();
     limit_blows();
     standing_.end_step();
-    standing_.follow_hinges();
+    standing_.follow_step();
     standing_.fall_quiet(since_step_);
   } else {
     ++skipped_;

@@ -49,7 +49,7 @@ class StandingFrame {
   void step_again();
   /// In a step: velocities when it began take the place of those now, and back.
   void swap_velocities() { std::swap(v_, v_before_); }
-  void follow_hinges();  ///< after a step; one that would turn back is stiff, as it was before
+  void follow_step();  ///< after a step; a hinge that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 
   // Changes of what there is: joints break, parts leave with all their joints. Then carry_on().
@@ -102,7 +102,7 @@ class StandingFrame {
   /// Before a step that may have to be done again.
   struct Moment {
     std::vector<double> u, v, f;
-    FrameLoads pushed, shaken;
+    FrameLoads laid, pushed, shaken;
     MotionLosses losses;
     double given = 0;
   };
@@ -127,7 +127,10 @@ class StandingFrame {
   void note_residual(const std::vector<double>& mass_way, const std::vector<double>& spring_way);
   void take_state(const FrameSolver& old, const std::vector<double>& u,
                   const std::vector<double>& v);
+  void go_back();
   std::vector<Hinge> stiff_hinges() const;
+  std::vector<Hinge> turned_back(const std::vector<Hinge>& now) const;
+  void follow_hinges();
   bool turn_endlessly(const std::vector<Hinge>& hinges) const;
   void hold_hinges(std::vector<Hinge> hinges);
 
@@ -145,7 +148,8 @@ class StandingFrame {
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;   ///< by joint
-  FrameLoads pushed_, shaken_;  ///< contacts and motion of the ground at the last loads
+  /// When it rings: the last loads, and of them contacts and motion of the ground.
+  FrameLoads laid_, pushed_, shaken_;
   Moment before_step_;
   bool rings_ = false, has_rung_ = false, is_live_ = false, can_step_again_ = false;
   bool is_settled_ = false, is_first_order_ = false;
