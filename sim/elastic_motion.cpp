@@ -38,6 +38,7 @@ void ElasticMotion::settle(const Progress& progress) {
 
 void ElasticMotion::follow(double now, double dt, bool ends_step) {
   standing_.set_time(now);
+  now_ = now;
   since_step_ += dt;
   note_contacts(dt);
   standing_.forget_changes();

@@ -122,6 +122,7 @@ class ElasticMotion final : public FrameMotion {
   /// after a break has not moved.
   std::vector<Vec3> offsets_;
   std::vector<FrameSolver::MassWay> ways_;  ///< of places_
+  double now_ = 0, noted_ = -1;  ///< places_, s
   double since_step_ = 0, given_ = 0, fracture_ = 0;
   std::uint64_t skipped_ = 0;
 };

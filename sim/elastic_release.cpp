@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How parts of the ringing frame move, and with what motion they leave it.
 #include <algorithm>
+#include <utility>
 
 #include "sim/elastic_motion.hpp"
 
@@ -111,9 +112,11 @@ void ElasticMotion::take_frames_motion(BodyParams& body,
       body.pose.rotation, inverse(body.inertia) * rotate(conjugate(body.pose.rotation), angular));
 }
 
-/// Before the frame loses anything.
+/// Before the frame loses anything. In balance at any time it is a wreck between two breaks of a
+/// cascade, displaced by kilometres: places are those before the first one.
 void ElasticMotion::note_places() {
   ways_ = standing_.ways();
+  if (!standing_.in_time() && std::exchange(noted_, now_) == now_) return;
   const std::vector<FrameSolver::MassWay> speeds =
       standing_.in_time() ? standing_.speeds() : std::vector<FrameSolver::MassWay>(ways_.size());
   for (std::uint32_t part = 0; part < ways_.size(); ++part) {
