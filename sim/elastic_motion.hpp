@@ -91,8 +91,7 @@ class ElasticMotion final : public FrameMotion {
   Vec3 velocity_of_end(std::uint32_t part, std::uint32_t node) const;
   Vec3 way_of_end(std::uint32_t part, std::uint32_t node) const;
   Vec3 velocity_at(std::uint32_t part, Vec3 point) const;
-  Vec3 turning(std::uint32_t part,
-               Vec3 (ElasticMotion::*of_end)(std::uint32_t, std::uint32_t) const) const;
+  Vec3 of_solid(std::uint32_t part, const FrameSolver::MassWay& way) const;
   void take_frames_place(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
   void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
   void note_places();
@@ -115,14 +114,15 @@ class ElasticMotion final : public FrameMotion {
   /// Where a part's centre of mass is by its own weight's work, and how it moves; of what the frame
   /// does not carry at the moment, where it was when it did.
   struct Place {
-    Vec3 way, velocity;  ///< from where it stood unbent, m; m/s
+    Vec3 way, velocity;    ///< from where it stood unbent, m; m/s
+    Vec3 turned, turning;  ///< first moments about the centre, kg m² and kg m²/s
   };
   std::vector<Place> places_;  ///< by part, when breaks were settled last
   /// By part: what its place is beyond what the frame says. A part that is borne in another way
   /// after a break has not moved.
   std::vector<Vec3> offsets_;
   std::vector<FrameSolver::MassWay> ways_;  ///< of places_
-  double now_ = 0, noted_ = -1;  ///< places_, s
+  double now_ = 0, noted_ = -1;             ///< places_, s
   double since_step_ = 0, given_ = 0, fracture_ = 0;
   std::uint64_t skipped_ = 0;
 };

@@ -57,27 +57,6 @@ Vec3 ElasticMotion::velocity_at(std::uint32_t part, Vec3 point) const {
   return (1 - share) * velocity_of_end(part, nodes[0]) + share * velocity_of_end(part, nodes[1]);
 }
 
-/// First moment about a part's middle of how its mass moves, linear between its nodes: neighbours
-/// share their masses as finite elements do.
-Vec3 ElasticMotion::turning(std::uint32_t part,
-                            Vec3 (ElasticMotion::*of_end)(std::uint32_t, std::uint32_t)
-                                const) const {
-  const std::vector<std::uint32_t> nodes = nodes_of(part);
-  const std::size_t count = nodes.size();
-  const double share = bodies_.mass_of(part) / (count == 2 ? 6 : 36), size = count == 2 ? 2 : 4;
-  Vec3 middle, moment;
-  for (const std::uint32_t node : nodes) middle = middle + (1 / size) * frame_.nodes[node].position;
-  std::array<Vec3, 4> moved;
-  for (std::size_t i = 0; i < count; ++i) moved[i] = (this->*of_end)(part, nodes[i]);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j) {
-      const std::size_t apart = (i + count - j) % count;
-      const double parted = apart == 0 ? size : apart == 2 ? 1 : size / 2;
-      moment = moment + cross(frame_.nodes[nodes[i]].position - middle, share * parted * moved[j]);
-    }
-  return moment;
-}
-
 /// The rigid motion, small, that moves the parts' masses as they were in the frame.
 void ElasticMotion::take_frames_place(BodyParams& body,
                                       const std::vector<std::uint32_t>& parts) const {
@@ -85,8 +64,7 @@ void ElasticMotion::take_frames_place(BodyParams& body,
   for (const std::uint32_t part : parts) {
     const Vec3 moved = bodies_.mass_of(part) * places_[part].way;
     way = way + moved;
-    turn = turn + turning(part, &ElasticMotion::way_of_end) +
-           cross(solids_[part].centre - body.centroid, moved);
+    turn = turn + places_[part].turned + cross(solids_[part].centre - body.centroid, moved);
   }
   way = (1 / body.mass) * way;
   turn = inverse(body.inertia) * turn;
@@ -102,14 +80,24 @@ void ElasticMotion::take_frames_motion(BodyParams& body,
   for (const std::uint32_t part : parts) {
     const Vec3 p = bodies_.own_mass_of(part) * places_[part].velocity;
     momentum = momentum + p;
-    angular = angular +
-              (bodies_.own_mass_of(part) / bodies_.mass_of(part)) *
-                  turning(part, &ElasticMotion::velocity_of_end) +
-              cross(solids_[part].centre - body.centroid, p);
+    angular = angular + places_[part].turning + cross(solids_[part].centre - body.centroid, p);
   }
   body.velocity = (1 / body.mass) * momentum;
   body.angular_velocity = rotate(
       body.pose.rotation, inverse(body.inertia) * rotate(conjugate(body.pose.rotation), angular));
+}
+
+/// The first moment of a part that turns as its mass, lines on members, did in the frame. A line
+/// says nothing of turns about itself.
+Vec3 ElasticMotion::of_solid(std::uint32_t part, const FrameSolver::MassWay& way) const {
+  constexpr double kLittle = 1e-6;
+  const PartSolid& solid = solids_[part];
+  const SymMat3 own = rotated(solid.axes, solid.inertia);
+  SymMat3 whole = way.inertia;
+  for (double SymMat3::*each :
+       {&SymMat3::xx, &SymMat3::yy, &SymMat3::zz, &SymMat3::xy, &SymMat3::xz, &SymMat3::yz})
+    whole.*each += kLittle * own.*each;
+  return (bodies_.own_mass_of(part) / solid.mass) * (own * (inverse(whole) * way.turned));
 }
 
 /// Before the frame loses anything. In balance at any time it is a wreck between two breaks of a
@@ -122,8 +110,10 @@ void ElasticMotion::note_places() {
   for (std::uint32_t part = 0; part < ways_.size(); ++part) {
     if (!bodies_.stands(part) || !(ways_[part].mass > 0)) continue;
     places_[part].way = (1 / ways_[part].mass) * ways_[part].moved + offsets_[part];
-    if (speeds[part].mass > 0)
-      places_[part].velocity = (1 / speeds[part].mass) * speeds[part].moved;
+    places_[part].turned = of_solid(part, ways_[part]);
+    if (!(speeds[part].mass > 0)) continue;
+    places_[part].velocity = (1 / speeds[part].mass) * speeds[part].moved;
+    places_[part].turning = of_solid(part, speeds[part]);
   }
 }
 

@@ -183,7 +183,7 @@ void FrameSolver::Impl::recover() {
 }
 
 Vec3 FrameSolver::Impl::displacement(std::uint32_t frame_node) const {
-  const std::uint32_t node = links.main_node(frame_node);
+  const std::uint32_t node = links.moving_node(frame_node);
   return node < kFixed ? three(u, 6 * std::size_t{node}) : Vec3{};
 }
 
@@ -377,7 +377,7 @@ Vec3 FrameSolver::displacement(std::uint32_t node) const {
 }
 
 Vec3 FrameSolver::rotation(std::uint32_t frame_node) const {
-  const std::uint32_t node = impl_->links.main_node(frame_node);
+  const std::uint32_t node = impl_->links.moving_node(frame_node);
   return node < kFixed ? three(impl_->u, 6 * std::size_t{node} + 3) : Vec3{};
 }
 
@@ -427,7 +427,7 @@ FactorCounts FrameSolver::counts() const {
 }
 
 std::size_t FrameSolver::freedom(std::uint32_t frame_node) const {
-  const std::uint32_t node = impl_->links.main_node(frame_node);
+  const std::uint32_t node = impl_->links.moving_node(frame_node);
   return node < kFixed ? 6 * std::size_t{node} : kHeld;
 }
 

@@ -142,6 +142,9 @@ class FrameSolver {
   struct MassWay {
     double mass = 0;
     Vec3 moved;
+    Vec3 centre;      ///< of that mass, m
+    Vec3 turned;      ///< first moment of mass × way about the centre, kg m²
+    SymMat3 inertia;  ///< of that mass, lines and points, about the centre, kg m²
   };
   std::vector<MassWay> ways_of_displacements(const std::vector<double>& live) const;  ///< by part
   std::vector<MassWay> ways_of(std::span<const double> velocities) const;  ///< without live loads

@@ -151,6 +151,10 @@ struct FrameSolver::Impl {
   double work_of(const FrameLoads& loads);
 
   // frame_ways.cpp: how far masses move.
+  struct LineWay {
+    Vec3 moved, turned;
+  };
+  LineWay line_way(std::uint32_t m, const Twelve& motion) const;
   template <class Held>
   static std::array<Twelve, 3> by_axis(const Held& held_nodes);
   std::vector<MassWay> mass_ways(std::span<const double> motion, const std::vector<double>& live,
