@@ -10,6 +10,11 @@
 #include "sim/part_pose.hpp"
 
 namespace sunder {
+namespace {
+
+constexpr double kFollow = 1e-3;  // m: colliders are no farther from their parts
+
+}  // namespace
 
 BuildingBodies::BuildingBodies(const CollapseScene& scene, RigidWorld& world,
                                const std::vector<PartSolid>& solids)
@@ -18,7 +23,8 @@ BuildingBodies::BuildingBodies(const CollapseScene& scene, RigidWorld& world,
       world_(world),
       solids_(solids),
       piece_of_(scene.frame.part_count(), kStanding),
-      collider_of_(scene.frame.part_count(), kNoBody) {
+      collider_of_(scene.frame.part_count(), kNoBody),
+      shifted_(scene.frame.part_count()) {
   for (const PartSolid& solid : solids) mass_.push_back(solid.mass);
   for (std::uint32_t part = 0; part < frame_.part_count(); ++part) add_collider(part);
 }
@@ -30,6 +36,20 @@ void BuildingBodies::add_collider(std::uint32_t part) {
                         kStandingOrder + next_order_++);
   collider_of_[part] = body;
   take_shape(part, body);
+}
+
+void BuildingBodies::move_collider(std::uint32_t part, const Pose& displacement) {
+  if (!stands(part) || collider_of_[part] == kNoBody) return;
+  const PartSolid& solid = solids_[part];
+  double farthest = 0;
+  for (const double end : {-solid.half_length, solid.half_length})
+    for (const Vec2 corner : solid.hull) {
+      const Vec3 point = solid.centre + solid.axes * Vec3{corner.x, corner.y, end};
+      farthest = std::max(farthest, length(displacement * point - shifted_[part] * point));
+    }
+  if (farthest < kFollow) return;
+  shifted_[part] = displacement;
+  world_.move_static(collider_of_[part], displacement * pose_of(solid));
 }
 
 void BuildingBodies::take_shape(std::uint32_t part, BodyId body) {
@@ -112,6 +132,7 @@ void BuildingBodies::add_piece(std::vector<std::uint32_t> parts, BodyParams body
   body.order = kMovingOrder + serial_++;
   const auto index = static_cast<std::uint32_t>(pieces_.size());
   piece.body = world_.add_body(body, prisms);
+  world_.accept_overlaps(piece.body);
   for (const std::uint32_t part : parts) piece_of_[part] = index;
   if (parts_of_body_.size() <= piece.body) parts_of_body_.resize(piece.body + 1);
   parts_of_body_[piece.body] = parts;
@@ -155,6 +176,7 @@ void BuildingBodies::make_room(std::uint32_t first, std::uint32_t count) {
   piece_of_.insert(piece_of_.begin() + first, count, kGone);
   collider_of_.insert(collider_of_.begin() + first, count, kNoBody);
   mass_.insert(mass_.begin() + first, count, 0);
+  shifted_.insert(shifted_.begin() + first, count, {});
   for (std::vector<std::uint32_t>& parts : parts_of_body_)
     for (std::uint32_t& part : parts) part = moved_up(part, first, count);
   for (Piece& piece : pieces_)
@@ -167,6 +189,7 @@ std::uint32_t BuildingBodies::divide(std::uint32_t member, std::uint32_t part) {
   mass_[part] = solids_[part].mass;
   if (stands(member)) {
     give_up_shape(member);
+    shifted_[member] = {};
     add_collider(member);
     add_collider(part);
     return kNoPart;

@@ -36,7 +36,8 @@ class BuildingBodies {
   std::uint32_t part_of(BodyId body, std::uint32_t prism) const;
   std::vector<std::uint32_t> not_standing() const;  ///< parts, ascending
 
-  double mass_of(std::uint32_t part) const;  ///< with what was added, kg
+  double mass_of(std::uint32_t part) const;                             ///< with what was added, kg
+  double own_mass_of(std::uint32_t part) const { return mass_[part]; }  ///< without that
   /// Mass, centroid and inertia of parts where they stood.
   BodyParams body_of(const std::vector<std::uint32_t>& parts) const;
   /// Parts that stood move from now on.
@@ -54,6 +55,9 @@ class BuildingBodies {
   /// A part that stands has no collider any more; returns what it was.
   BodyId give_up_shape(std::uint32_t part);
   void take_shape(std::uint32_t part, BodyId body);  ///< a fixed body stands for the part
+  /// The collider of a part that stands follows it, if it has one and this is a millimetre away
+  /// from where that is. `displacement` is of the design frame.
+  void move_collider(std::uint32_t part, const Pose& displacement);
   void set_mass(std::uint32_t part, double mass) { mass_[part] = mass; }  ///< of one that stands
   void add_live(double more);  ///< pieces grow heavier, N/m² on slabs
 
@@ -72,6 +76,7 @@ class BuildingBodies {
   const std::vector<PartSolid>& solids_;
   std::vector<std::uint32_t> piece_of_;                    ///< by part
   std::vector<BodyId> collider_of_;                        ///< by part
+  std::vector<Pose> shifted_;                              ///< by part: where its collider is
   std::vector<double> mass_;                               ///< by part, kg
   std::vector<std::vector<std::uint32_t>> parts_of_body_;  ///< by BodyId: prism → part
   std::vector<Piece> pieces_;

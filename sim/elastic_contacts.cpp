@@ -40,6 +40,39 @@ void ElasticMotion::press() {
   standing_.set_contacts(standing_contacts());
 }
 
+/// Rigid and small, by its nodes.
+Pose ElasticMotion::displacement_of(std::uint32_t part) const {
+  const std::vector<std::uint32_t> nodes = nodes_of(part);
+  const double share = 1 / static_cast<double>(nodes.size());
+  Vec3 middle, way = offsets_[part], moment;
+  for (const std::uint32_t node : nodes) middle = middle + share * frame_.nodes[node].position;
+  SymMat3 spread;
+  double squares = 0;
+  for (const std::uint32_t node : nodes) {
+    const Vec3 arm = frame_.nodes[node].position - middle, moved = way_of_end(part, node);
+    way = way + share * moved;
+    moment = moment + cross(arm, moved);
+    squares += dot(arm, arm);
+    spread.xx += arm.y * arm.y + arm.z * arm.z;
+    spread.yy += arm.x * arm.x + arm.z * arm.z;
+    spread.zz += arm.x * arm.x + arm.y * arm.y;
+    spread.xy -= arm.x * arm.y;
+    spread.xz -= arm.x * arm.z;
+    spread.yz -= arm.y * arm.z;
+  }
+  // A member does not turn about its own axis.
+  const Vec3 turn = nodes.size() == 2 ? (1 / squares) * moment : inverse(spread) * moment;
+  return small_motion(middle, way, turn);
+}
+
+/// What something touches stands for the world where it is in the frame. Not in balance at any
+/// time: what is left of a frame there jumps.
+void ElasticMotion::move_colliders() {
+  if (!standing_.in_time()) return;
+  for (const std::uint32_t part : touches_.active())
+    if (bodies_.stands(part)) bodies_.move_collider(part, displacement_of(part));
+}
+
 /// Of the place that is touched, along the force, beyond the speed of what struck it.
 double ElasticMotion::speed_ahead(std::uint32_t part) const {
   const FrameTouch& touch = touches_[part];

@@ -38,10 +38,16 @@ void ElasticMotion::end_divisions(std::span<const MemberDivision> divisions) {
   touches_.make_room(first, count);
   inner_.make_room(first, count);
   bodies_.make_room(first, count);
+  const auto make_room = [&](auto& list) { list.insert(list.begin() + first, count, {}); };
+  make_room(places_);
+  make_room(offsets_);
+  if (!ways_.empty()) make_room(ways_);
   link_again();
   const std::size_t first_new = bodies_.pieces().size();
   for (const MemberDivision& division : divisions) {
     divide_touch(division);
+    offsets_[division.part] = offsets_[division.member];
+    places_[division.part] = places_[division.member];
     if (bodies_.stands(division.member)) standing.push_back(division.node);
     const std::uint32_t piece = bodies_.divide(division.member, division.part);
     if (piece != kNoPart) pieces.push_back(piece);

@@ -27,7 +27,9 @@ ElasticMotion::ElasticMotion(const CollapseScene& scene, RigidWorld& world,
       bodies_(scene, world, solids),
       touches_(scene.frame.part_count()),
       standing_(scene),
-      inner_(scene, world, solids, bodies_, links_) {}
+      inner_(scene, world, solids, bodies_, links_),
+      places_(scene.frame.part_count()),
+      offsets_(scene.frame.part_count()) {}
 
 void ElasticMotion::settle(const Progress& progress) {
   standing_.settle(progress);
@@ -36,6 +38,7 @@ void ElasticMotion::settle(const Progress& progress) {
 
 void ElasticMotion::follow(double now, double dt, bool ends_step) {
   standing_.set_time(now);
+  now_ = now;
   since_step_ += dt;
   note_contacts(dt);
   standing_.forget_changes();
@@ -54,11 +57,12 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
     standing_.begin_step();
     limit_blows();
     standing_.end_step();
-    standing_.follow_hinges();
+    standing_.follow_step();
     standing_.fall_quiet(since_step_);
   } else {
     ++skipped_;
   }
+  move_colliders();
   since_step_ = 0;
 }
 
@@ -121,17 +125,28 @@ void ElasticMotion::stop_turning(std::span<const std::uint32_t> joints) {
 }
 
 double ElasticMotion::energy() const {
-  return standing_.energy() + world_.kinetic_energy();
+  return standing_.kinetic() + standing_.strain() + potential() + world_.kinetic_energy();
 }
 
-/// What no longer hangs on the ground moves, as it did in the frame. Returns its parts.
-std::vector<std::uint32_t> ElasticMotion::release_loose() {
+double ElasticMotion::potential() const {
+  double moment = 0;
+  for (std::uint32_t part = 0; part < offsets_.size(); ++part)
+    if (bodies_.stands(part)) moment += bodies_.mass_of(part) * offsets_[part].y;
+  return standing_.potential() + scene_.simulation.gravity * moment;
+}
+
+/// What no longer hangs on the ground moves, from where it was in the frame and as it did there.
+/// Returns its parts, and in `lowered` their potential on the way that they had gone, J.
+std::vector<std::uint32_t> ElasticMotion::release_loose(double& lowered) {
   std::vector<std::uint32_t> released;
   for (SupportGraph::Island& island : graph_.break_bonds(broken_).islands) {
     std::erase_if(island.chunks, [&](std::uint32_t part) { return !bodies_.stands(part); });
     if (island.chunks.empty()) continue;
     BodyParams body = bodies_.body_of(island.chunks);
+    take_frames_place(body, island.chunks);
     take_frames_motion(body, island.chunks);
+    lowered +=
+        body.mass * scene_.simulation.gravity * (body.pose * body.centroid - body.centroid).y;
     for (const std::uint32_t part : island.chunks) touches_.forget(part);
     released.insert(released.end(), island.chunks.begin(), island.chunks.end());
     bodies_.release(std::move(island.chunks), body);
@@ -156,7 +171,9 @@ bool ElasticMotion::settle_breaks() {
   const double before = is_struck ? energy() : world_.kinetic_energy();
   if (is_struck) standing_.wake();
   const std::size_t first_new = bodies_.pieces().size();
-  const std::vector<std::uint32_t> released = release_loose();
+  if (is_struck) note_places();
+  double lowered = 0;
+  const std::vector<std::uint32_t> released = release_loose(lowered);
   for (const std::uint32_t piece : in_pieces) {
     auto groups = links_.components(bodies_.pieces()[piece].parts);
     if (groups.size() > 1) bodies_.split(piece, std::move(groups));
@@ -168,12 +185,13 @@ bool ElasticMotion::settle_breaks() {
       return !bodies_.stands(joint.a) || (joint.b != kNoPart && !bodies_.stands(joint.b));
     });
     standing_.take_out(of_standing, released);
+    keep_places();
     if (standing_.in_time()) stop_turning(broken_);
     standing_.carry_on();
   }
   part_bodies();
   inner_.start(first_new, in_pieces, broken_, touches_);
-  fracture_ += before - (is_struck ? energy() : world_.kinetic_energy());
+  fracture_ += before - (is_struck ? energy() + lowered : world_.kinetic_energy());
   broken_.clear();
   return true;
 }
@@ -187,7 +205,8 @@ void ElasticMotion::part_bodies() {
   apart_.clear();
 }
 
-/// Joints of parts that what is left of their joints cannot hold.
+/// Joints of parts that what is left of their joints cannot hold, and of plates that are all that
+/// is left between a part of the frame and the rest.
 std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
   std::vector<std::uint32_t> joints;
   const auto add = [&](const std::vector<std::uint32_t>& parts) {
@@ -197,6 +216,8 @@ std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
   };
   add(standing_.loose_parts());
   add(inner_.unheld());
+  const std::vector<std::uint32_t> bridging = standing_.bridging_joints();
+  joints.insert(joints.end(), bridging.begin(), bridging.end());
   return joints;
 }
 
@@ -220,9 +241,12 @@ void ElasticMotion::link_again() {
 }
 
 void ElasticMotion::remove_part(std::uint32_t part) {
-  const double before = world_.kinetic_energy();
+  const auto of_bodies = [&] {
+    return world_.kinetic_energy() + world_.potential_energy() - bodies_.baseline();
+  };
+  const double before = of_bodies();
   bodies_.remove(part);
-  given_ += world_.kinetic_energy() - before;
+  given_ += of_bodies() - before;
 }
 
 BodyId ElasticMotion::give_up_shape(std::uint32_t part) {

@@ -70,7 +70,7 @@ class ElasticMotion final : public FrameMotion {
   std::uint64_t bodies() const override { return bodies_.piece_count(); }
   double kinetic() const override { return standing_.kinetic(); }
   double strain() const override { return standing_.strain(); }
-  double potential() const override { return standing_.potential(); }
+  double potential() const override;
   double baseline() const override { return bodies_.baseline(); }
   MotionLosses losses() const override;
   double given() const override { return given_ + standing_.given(); }
@@ -85,7 +85,7 @@ class ElasticMotion final : public FrameMotion {
   void part_bodies();
   bool settle_hinges();
   void stop_turning(std::span<const std::uint32_t> joints);
-  std::vector<std::uint32_t> release_loose();
+  std::vector<std::uint32_t> release_loose(double& lowered);
 
   // elastic_division.cpp: members in two parts.
   void divide_touch(const MemberDivision& division);
@@ -97,12 +97,20 @@ class ElasticMotion final : public FrameMotion {
   void limit_blows();
   std::vector<FrameLoads::OnPart> standing_contacts() const;
   void press();
+  Pose displacement_of(std::uint32_t part) const;
+  void move_colliders();
 
   // elastic_release.cpp: how parts of a ringing frame move.
   std::vector<std::uint32_t> nodes_of(std::uint32_t part) const;
+  std::uint32_t held_node(std::uint32_t part, std::uint32_t node) const;
   Vec3 velocity_of_end(std::uint32_t part, std::uint32_t node) const;
+  Vec3 way_of_end(std::uint32_t part, std::uint32_t node) const;
   Vec3 velocity_at(std::uint32_t part, Vec3 point) const;
+  Vec3 of_solid(std::uint32_t part, const FrameSolver::MassWay& way) const;
+  void take_frames_place(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
   void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
+  void note_places();
+  void keep_places();
 
   const CollapseScene& scene_;
   const Frame& frame_;
@@ -118,6 +126,18 @@ class ElasticMotion final : public FrameMotion {
   std::vector<std::array<std::uint32_t, 2>> apart_;  ///< parts that bear on each other no more
   std::vector<StandingFrame::Hinge> yielding_;       ///< since breaks were settled
   std::vector<SupportReaction> supports_;
+  /// Where a part's centre of mass is by its own weight's work, and how it moves; of what the frame
+  /// does not carry at the moment, where it was when it did.
+  struct Place {
+    Vec3 way, velocity;    ///< from where it stood unbent, m; m/s
+    Vec3 turned, turning;  ///< first moments about the centre, kg m² and kg m²/s
+  };
+  std::vector<Place> places_;  ///< by part, when breaks were settled last
+  /// By part: what its place is beyond what the frame says. A part that is borne in another way
+  /// after a break has not moved.
+  std::vector<Vec3> offsets_;
+  std::vector<FrameSolver::MassWay> ways_;  ///< of places_
+  double now_ = 0, noted_ = -1;             ///< places_, s
   double since_step_ = 0, given_ = 0, fracture_ = 0;
   double undivided_ = 0;  ///< energy of the standing frame when divisions began, J
   std::uint64_t skipped_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How parts of the ringing frame move, and with what motion they leave it.
 #include <algorithm>
+#include <utility>
 
 #include "sim/elastic_motion.hpp"
 
@@ -13,21 +14,33 @@ std::vector<std::uint32_t> ElasticMotion::nodes_of(std::uint32_t part) const {
   return {nodes.begin(), nodes.end()};
 }
 
-/// Of a part at its node; an end whose joint broke earlier goes with the part's other end.
-Vec3 ElasticMotion::velocity_of_end(std::uint32_t part, std::uint32_t node) const {
+/// The node that an end of a part moves with: an end whose joint broke earlier goes with the part's
+/// other end.
+std::uint32_t ElasticMotion::held_node(std::uint32_t part, std::uint32_t node) const {
   std::uint32_t held = node;
   const auto holds = [&](std::uint32_t j) {
     return frame_.joints[j].node == held &&
            (links_.intact(j) || std::ranges::binary_search(broken_, j));
   };
-  if (part < frame_.members.size() && std::ranges::none_of(links_.joints_of(part), holds)) {
-    const FrameMember& member = frame_.members[part];
-    held = member.from == node ? member.to : member.from;
-    if (std::ranges::none_of(links_.joints_of(part), holds)) held = node;
-  }
+  if (part >= frame_.members.size() || std::ranges::any_of(links_.joints_of(part), holds))
+    return node;
+  const FrameMember& member = frame_.members[part];
+  held = member.from == node ? member.to : member.from;
+  return std::ranges::any_of(links_.joints_of(part), holds) ? held : node;
+}
+
+/// Of a part at its node.
+Vec3 ElasticMotion::velocity_of_end(std::uint32_t part, std::uint32_t node) const {
+  const std::uint32_t held = held_node(part, node);
   const StandingFrame::Motion motion = standing_.motion(held);
   return motion.velocity +
          cross(motion.spin, frame_.nodes[node].position - frame_.nodes[held].position);
+}
+
+Vec3 ElasticMotion::way_of_end(std::uint32_t part, std::uint32_t node) const {
+  const std::uint32_t held = held_node(part, node);
+  return standing_.displacement(held) +
+         cross(standing_.rotation(held), frame_.nodes[node].position - frame_.nodes[held].position);
 }
 
 /// Of a member linear between its ends, of a plate the mean of its corners.
@@ -44,35 +57,75 @@ Vec3 ElasticMotion::velocity_at(std::uint32_t part, Vec3 point) const {
   return (1 - share) * velocity_of_end(part, nodes[0]) + share * velocity_of_end(part, nodes[1]);
 }
 
-/// The rigid motion with the momentum and angular momentum of the parts. Between its nodes a part's
-/// velocity is linear in each direction: neighbours share their masses as finite elements do.
+/// The rigid motion, small, that moves the parts' masses as they were in the frame.
+void ElasticMotion::take_frames_place(BodyParams& body,
+                                      const std::vector<std::uint32_t>& parts) const {
+  Vec3 way, turn;
+  for (const std::uint32_t part : parts) {
+    const Vec3 moved = bodies_.mass_of(part) * places_[part].way;
+    way = way + moved;
+    turn = turn + places_[part].turned + cross(solids_[part].centre - body.centroid, moved);
+  }
+  way = (1 / body.mass) * way;
+  turn = inverse(body.inertia) * turn;
+  body.pose = small_motion(body.centroid, way, turn);
+}
+
+/// The rigid motion with the momentum and angular momentum of the parts. Added live loads have none
+/// in the frame.
 void ElasticMotion::take_frames_motion(BodyParams& body,
                                        const std::vector<std::uint32_t>& parts) const {
   if (!standing_.in_time()) return;
   Vec3 momentum, angular;
   for (const std::uint32_t part : parts) {
-    const std::vector<std::uint32_t> nodes = nodes_of(part);
-    const std::size_t count = nodes.size();
-    const double share = bodies_.mass_of(part) / (count == 2 ? 6 : 36), size = count == 2 ? 2 : 4;
-    Vec3 middle;
-    std::array<Vec3, 4> velocity;
-    for (std::size_t i = 0; i < count; ++i) {
-      middle = middle + (1 / size) * frame_.nodes[nodes[i]].position;
-      velocity[i] = velocity_of_end(part, nodes[i]);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 arm = solids_[part].centre + frame_.nodes[nodes[i]].position - middle;
-      for (std::size_t j = 0; j < count; ++j) {
-        const std::size_t apart = (i + count - j) % count;
-        const double parted = apart == 0 ? size : apart == 2 ? 1 : size / 2;
-        const Vec3 p = share * parted * velocity[j];
-        momentum = momentum + p;
-        angular = angular + cross(arm - body.centroid, p);
-      }
-    }
+    const Vec3 p = bodies_.own_mass_of(part) * places_[part].velocity;
+    momentum = momentum + p;
+    angular = angular + places_[part].turning + cross(solids_[part].centre - body.centroid, p);
   }
   body.velocity = (1 / body.mass) * momentum;
-  body.angular_velocity = inverse(body.inertia) * angular;
+  body.angular_velocity = rotate(
+      body.pose.rotation, inverse(body.inertia) * rotate(conjugate(body.pose.rotation), angular));
+}
+
+/// The first moment of a part that turns as its mass, lines on members, did in the frame. A line
+/// says nothing of turns about itself.
+Vec3 ElasticMotion::of_solid(std::uint32_t part, const FrameSolver::MassWay& way) const {
+  constexpr double kLittle = 1e-6;
+  const PartSolid& solid = solids_[part];
+  const SymMat3 own = rotated(solid.axes, solid.inertia);
+  SymMat3 whole = way.inertia;
+  for (double SymMat3::*each :
+       {&SymMat3::xx, &SymMat3::yy, &SymMat3::zz, &SymMat3::xy, &SymMat3::xz, &SymMat3::yz})
+    whole.*each += kLittle * own.*each;
+  return (bodies_.own_mass_of(part) / solid.mass) * (own * (inverse(whole) * way.turned));
+}
+
+/// Before the frame loses anything. In balance at any time it is a wreck between two breaks of a
+/// cascade, displaced by kilometres: places are those before the first one.
+void ElasticMotion::note_places() {
+  ways_ = standing_.ways();
+  if (!standing_.in_time() && std::exchange(noted_, now_) == now_) return;
+  const std::vector<FrameSolver::MassWay> speeds =
+      standing_.in_time() ? standing_.speeds() : std::vector<FrameSolver::MassWay>(ways_.size());
+  for (std::uint32_t part = 0; part < ways_.size(); ++part) {
+    if (!bodies_.stands(part) || !(ways_[part].mass > 0)) continue;
+    places_[part].way = (1 / ways_[part].mass) * ways_[part].moved + offsets_[part];
+    places_[part].turned = of_solid(part, ways_[part]);
+    if (!(speeds[part].mass > 0)) continue;
+    places_[part].velocity = (1 / speeds[part].mass) * speeds[part].moved;
+    places_[part].turning = of_solid(part, speeds[part]);
+  }
+}
+
+/// What still stands is where it was, whatever bears it now.
+void ElasticMotion::keep_places() {
+  const std::vector<FrameSolver::MassWay> now = standing_.ways();
+  const auto way = [](const FrameSolver::MassWay& w) {
+    return w.mass > 0 ? (1 / w.mass) * w.moved : Vec3{};
+  };
+  for (std::uint32_t part = 0; part < now.size(); ++part) {
+    if (bodies_.stands(part)) offsets_[part] = offsets_[part] + (way(ways_[part]) - way(now[part]));
+  }
 }
 
 }  // namespace sunder

@@ -107,6 +107,13 @@ void FrameLinks::link(std::uint32_t frame_node) {
   }
 }
 
+std::uint32_t FrameLinks::moving_node(std::uint32_t frame_node) const {
+  if (main_node_[frame_node] == kFixed) return kFixed;
+  for (const std::uint32_t end : ends_at(frame_node))
+    if (ends_[end].held) return ends_[end].node;
+  return main_node_[frame_node];
+}
+
 void FrameLinks::cut(std::uint32_t joint) {
   intact_[joint] = 0;
   if (frame_.joints[joint].node != kNoPart) link(frame_.joints[joint].node);

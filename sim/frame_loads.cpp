@@ -13,7 +13,6 @@ namespace sunder {
 namespace {
 
 constexpr std::uint32_t kFixed = FrameLinks::kFixed;
-constexpr double kLoadGravity = 9.81;  // m/s² by which a live load becomes mass
 const double kGauss = std::sqrt(0.6);  // outer points of Gauss's rule of three, weight 5/9
 const double kGaussTwo = std::sqrt(1 / 3.0);
 

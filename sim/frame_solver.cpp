@@ -181,7 +181,7 @@ void FrameSolver::Impl::recover() {
 }
 
 Vec3 FrameSolver::Impl::displacement(std::uint32_t frame_node) const {
-  const std::uint32_t node = links.main_node(frame_node);
+  const std::uint32_t node = links.moving_node(frame_node);
   return node < kFixed ? three(u, 6 * std::size_t{node}) : Vec3{};
 }
 
@@ -310,6 +310,26 @@ std::vector<std::uint32_t> FrameSolver::loose_parts() const {
   return parts;
 }
 
+std::vector<std::uint32_t> FrameSolver::bridging_joints() const {
+  std::vector<std::uint32_t> joints;
+  if (impl_->pieces.empty()) return joints;
+  const auto piece_at = [&](std::uint32_t j) {
+    return impl_->piece_of(impl_->members[impl_->frame.joints[j].b]);
+  };
+  for (const PlateSupport& plate : impl_->plates) {
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t i = 0; i < plate.joint_count; ++i)
+      if (plate.carries[i]) own.push_back(plate.joints[i]);
+    const bool is_on_one = std::ranges::all_of(
+        own, [&](std::uint32_t j) { return piece_at(j) == piece_at(own.front()); });
+    if (is_on_one && !plate.on_ground) continue;
+    std::ranges::copy_if(own, std::back_inserter(joints),
+                         [&](std::uint32_t j) { return piece_at(j) != Impl::kNone; });
+  }
+  std::ranges::sort(joints);
+  return joints;
+}
+
 std::vector<Mechanism> FrameSolver::mechanisms() const {
   std::vector<Mechanism> result;
   for (const Impl::Restraint& held : impl_->held)
@@ -358,7 +378,7 @@ Vec3 FrameSolver::displacement(std::uint32_t node) const {
 }
 
 Vec3 FrameSolver::rotation(std::uint32_t frame_node) const {
-  const std::uint32_t node = impl_->links.main_node(frame_node);
+  const std::uint32_t node = impl_->links.moving_node(frame_node);
   return node < kFixed ? three(impl_->u, 6 * std::size_t{node} + 3) : Vec3{};
 }
 
@@ -408,7 +428,7 @@ FactorCounts FrameSolver::counts() const {
 }
 
 std::size_t FrameSolver::freedom(std::uint32_t frame_node) const {
-  const std::uint32_t node = impl_->links.main_node(frame_node);
+  const std::uint32_t node = impl_->links.moving_node(frame_node);
   return node < kFixed ? 6 * std::size_t{node} : kHeld;
 }
 

@@ -118,6 +118,9 @@ class FrameSolver {
   /// hinge, slabs on less than three joints or on joints in line, walls on less than two (of the
   /// ground floor: none). They take part in nothing. Ascending.
   std::vector<std::uint32_t> loose_parts() const;
+  /// Joints by which a slab or wall hangs on a free piece and on something else as well: plates
+  /// are loads, they hold nothing together. Ascending.
+  std::vector<std::uint32_t> bridging_joints() const;
   /// Where what is left moved without resistance; springs hold it. The loads there mean nothing.
   std::vector<Mechanism> mechanisms() const;
 
@@ -147,6 +150,17 @@ class FrameSolver {
   double strain_energy() const;
   /// Work of these loads on the displacements as they are, J.
   double work_of(const FrameLoads& loads) const;
+  /// What of a part's mass the model carries, kg, and mass × way (or velocity) of its places, kg m:
+  /// as its weight is shared by the nodes, so that work_of(weight) is the sum by gravity.
+  struct MassWay {
+    double mass = 0;
+    Vec3 moved;
+    Vec3 centre;      ///< of that mass, m
+    Vec3 turned;      ///< first moment of mass × way about the centre, kg m²
+    SymMat3 inertia;  ///< of that mass, lines and points, about the centre, kg m²
+  };
+  std::vector<MassWay> ways_of_displacements(const std::vector<double>& live) const;  ///< by part
+  std::vector<MassWay> ways_of(std::span<const double> velocities) const;  ///< without live loads
   FactorCounts counts() const;
 
   // For dynamics: vectors of six numbers per free node (`freedoms`), in an order of their own.

@@ -31,6 +31,7 @@ struct FrameSolver::Impl {
   Impl(const Frame& frame_to_hold, const FrameSolverParams& parameters, const Impl* like);
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  static constexpr double kLoadGravity = 9.81;  ///< m/s² by which a live load becomes mass
   /// elastic: an element of the stiffness. hanging: a rigid cantilever at its held end.
   enum class Role : std::uint8_t { elastic, hanging, loose, removed };
   struct PointMass {
@@ -146,6 +147,16 @@ struct FrameSolver::Impl {
   void turn_hinges();
   double strain_of_hinges() const;
   double work_of(const FrameLoads& loads);
+
+  // frame_ways.cpp: how far masses move.
+  struct LineWay {
+    Vec3 moved, turned;
+  };
+  LineWay line_way(std::uint32_t m, const Twelve& motion) const;
+  template <class Held>
+  static std::array<Twelve, 3> by_axis(const Held& held_nodes);
+  std::vector<MassWay> mass_ways(std::span<const double> motion, const std::vector<double>& live,
+                                 bool bends) const;
 
   // frame_panels.cpp: slabs and walls that are elastic.
   void add_panel_edges(FrameLinks::Edges& edges) const;

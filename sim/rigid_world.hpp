@@ -166,6 +166,11 @@ class RigidWorld {
   JointId add_joint(const JointParams& params);
   void remove_joint(JointId joint);
   JointReaction joint_reaction(JointId joint) const;
+  /// Where the body overlaps others now it is not pushed out: contact begins so much deeper, until
+  /// they have been further apart.
+  void accept_overlaps(BodyId body);
+  /// A collider that never moves by itself stands elsewhere; what rests on or near it wakes up.
+  void move_static(BodyId body, const Pose& pose);
   /// The two bodies never touch from now on (a post that snapped bears no more).
   void separate(BodyId a, BodyId b);
   /// The same body heavier or lighter, inertia in proportion, velocities kept.

@@ -151,6 +151,8 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   using WorldParts::task;
   const std::vector<RestingLoad>& resting();
   void set_mass(Body& body, double mass);
+  void accept_overlaps(Body& body);
+  void move_static(Body& body, const Pose& pose);
   JointId insert(std::unique_ptr<RigidJoint> joint);
   void remove(RigidJoint& joint);
   void step(double dt);
@@ -178,6 +180,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   void wake_around(Body& body);
   void forget_near(Body& body);
   bool passes(Body& a, const Body& b);
+  void allow_overlaps(Body& one, const Body& other, bool is_a);
   void unite(const Body& a, const Body& b);
   void set_contact_times(const RigidJoint& joint);
   void put_to_sleep(Body& body);
@@ -390,6 +393,55 @@ void World::forget_near(Body& body) {
   }
 }
 
+void World::accept_overlaps(Body& body) {
+  find_near(body.solid.extent(place(body)));
+  std::sort(found_.begin(), found_.end(),
+            [](const Body* x, const Body* y) { return ranks_before(*x, *y); });
+  if (params.has_ground) found_.push_back(bodies[kGround].get());
+  for (Body* other : std::vector<Body*>(found_)) {
+    if (other == &body || passes(body, *other)) continue;
+    touches_.clear();
+    toucher.find(body.solid, place(body), other->solid, place(*other), 0, {}, touches_);
+    for (const PartTouch& touch : touches_) {
+      if (!(touch.point.gap < 0)) continue;
+      const bool goes_on = !body.overlaps.empty() && body.overlaps.back().other == other->id &&
+                           body.overlaps.back().part == touch.part_a &&
+                           body.overlaps.back().part_of_other == touch.part_b;
+      if (!goes_on) body.overlaps.push_back({other->id, touch.part_a, touch.part_b, 0});
+      body.overlaps.back().depth = std::max(body.overlaps.back().depth, -touch.point.gap);
+    }
+  }
+}
+
+/// Of the touches found between the two; `one` is the first of each pair, or (not is_a) the second.
+void World::allow_overlaps(Body& one, const Body& other, bool is_a) {
+  for (Overlap& overlap : one.overlaps) {
+    if (overlap.other != other.id) continue;
+    double deepest_now = 0;
+    for (PartTouch& touch : touches_) {
+      if ((is_a ? touch.part_a : touch.part_b) != overlap.part ||
+          (is_a ? touch.part_b : touch.part_a) != overlap.part_of_other)
+        continue;
+      deepest_now = std::max(deepest_now, -touch.point.gap);
+      touch.point.gap += overlap.depth;
+    }
+    overlap.depth = std::min(overlap.depth, deepest_now);
+  }
+  std::erase_if(one.overlaps, [](const Overlap& overlap) { return overlap.depth <= 0; });
+}
+
+void World::move_static(Body& body, const Pose& pose) {
+  assert(!body.moves && !body.is_ground() && "a collider that never moves by itself");
+  wake_around(body);
+  body.rotation = normalised(pose.rotation);
+  body.axes = axes_of(body.rotation);
+  body.centre = pose.position;
+  body.in_bullet->setWorldTransform(place(body, body.axes, body.centre));
+  body.swept = body.solid.rough_extent(place(body));
+  set_box(body);
+  wake_around(body);
+}
+
 /// Whether the two bodies never collide: joined, two joints apart by way of a moving body, or
 /// separated for good.
 bool World::passes(Body& a, const Body& b) {
@@ -577,6 +629,8 @@ void World::meet(Body& one, Body& other) {
   const std::size_t from = task.meetings.size();
   touches_.clear();
   toucher.find(a.solid, place(a), b.solid, place(b), margin, path_of(a, b), touches_);
+  allow_overlaps(a, b, true);
+  allow_overlaps(b, a, false);
   add_links(a, b);
   if (other.awake || !other.moves || other.is_merged) return;
   const bool wakes = std::any_of(task.meetings.begin() + from, task.meetings.end(), [&](auto& m) {
@@ -1136,6 +1190,14 @@ void RigidWorld::separate(BodyId first, BodyId second) {
   Body& b = impl_->world.body(second);
   a.passes.push_back(&b);
   b.passes.push_back(&a);
+}
+
+void RigidWorld::accept_overlaps(BodyId id) {
+  impl_->world.accept_overlaps(impl_->world.body(id));
+}
+
+void RigidWorld::move_static(BodyId id, const Pose& pose) {
+  impl_->world.move_static(impl_->world.body(id), pose);
 }
 
 void RigidWorld::set_mass(BodyId id, double mass) {

@@ -68,6 +68,11 @@ Quaternion turned(const Quaternion& rotation, Vec3 angle) {
   return normalised(Quaternion{angle.x / 2, angle.y / 2, angle.z / 2, 1} * rotation);
 }
 
+Pose small_motion(Vec3 centre, Vec3 way, Vec3 angle) {
+  const Quaternion rotation = turned({}, angle);
+  return {centre + way - rotate(rotation, centre), rotation};
+}
+
 SymMat3 inverse(const SymMat3& m) {
   const double xx = m.yy * m.zz - m.yz * m.yz;
   const double xy = m.xz * m.yz - m.xy * m.zz;

@@ -22,6 +22,8 @@ Axes axes_of(const Quaternion& rotation);
 Quaternion normalised(const Quaternion& q);
 /// `rotation` followed by the small rotation vector `angle` (rad, world axes), exact to O(angle³).
 Quaternion turned(const Quaternion& rotation, Vec3 angle);
+/// Moves a centre by `way` and turns about it by the small rotation vector.
+Pose small_motion(Vec3 centre, Vec3 way, Vec3 angle);
 
 constexpr Vec3 operator*(const SymMat3& m, Vec3 v) {
   return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,

@@ -70,6 +70,7 @@ void StandingFrame::end_divisions(std::uint32_t count, std::span<const std::uint
   start_anew(undivided_.hinges);
   is_live_ = true;
   can_step_again_ = false;
+  pushed_ = touching();
   if (!undivided_.in_time) return;
   wake();
   quiet_for_ = quiet_for;

@@ -237,8 +237,28 @@ void StandingFrame::solve_anew() {
 /// Under other loads; in balance at any time, what they leave over counts as damping.
 void StandingFrame::balance() {
   const double before = energy();
+  const double pushed = solve_pushed();
+  losses_.damping += before + pushed - energy();
+}
+
+/// At rest; contacts give the frame the mean of their forces before and after times the way. What
+/// they gave, J, is in the books.
+double StandingFrame::solve_pushed() {
+  const FrameLoads pushes = touching();
+  const bool touched = !pushed_.contacts.empty() || !pushes.contacts.empty();
+  const auto work = [&] {
+    return touched ? static_.frame->work_of(pushed_) + static_.frame->work_of(pushes) : 0;
+  };
+  const double before = work();
   solve_static();
-  losses_.damping += before - energy();
+  const double given = (work() - before) / 2;
+  if (touched) {
+    const std::span<const double> found = static_.frame->displacements();
+    static_.frame->set_displacements(std::vector<double>(found.begin(), found.end()), loads());
+  }
+  losses_.contact -= given;
+  pushed_ = pushes;
+  return given;
 }
 
 void StandingFrame::make_dynamic() {
@@ -260,7 +280,22 @@ void StandingFrame::take_out(std::span<const std::uint32_t> joints,
                              std::span<const std::uint32_t> parts) {
   broken_.insert(broken_.end(), joints.begin(), joints.end());
   for (const std::uint32_t part : parts) gone_.push_back(known_part(part));
-  if (in_time()) bring_up_to_date(dynamic_);
+  bring_up_to_date(in_time() ? dynamic_ : static_);
+}
+
+/// By the scene's numbers: members that came in where nothing stands have no way.
+std::vector<FrameSolver::MassWay> StandingFrame::by_part(
+    std::vector<FrameSolver::MassWay> ways) const {
+  ways.insert(ways.begin() + frame_.slab_part(0), members_since_, {});
+  return ways;
+}
+
+std::vector<FrameSolver::MassWay> StandingFrame::ways() const {
+  return by_part(in_use().ways_of_displacements(loads().live));
+}
+
+std::vector<FrameSolver::MassWay> StandingFrame::speeds() const {
+  return by_part(in_use().ways_of(v_));
 }
 
 void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
@@ -285,6 +320,7 @@ void StandingFrame::carry_on() {
     stand_on();
   } else {
     solve_static();
+    pushed_ = touching();
   }
   hinges_ = in_use().hinges();
   is_live_ = true;
@@ -349,14 +385,10 @@ double StandingFrame::strain() const {
 }
 
 double StandingFrame::potential() const {
-  FrameLoads own;
-  own.gravity = {0, -scene_.simulation.gravity, 0};
-  if (live_ > 0) own.live.assign(frame_.slabs.size(), live_);
-  FrameSolver& solver = ledger();
-  const double work = solver.work_of(own);
-  const std::vector<double> u(solver.displacements().begin(), solver.displacements().end());
-  solver.set_displacements(u, loads());  // its loads again
-  return -work;
+  double height = 0;
+  for (const FrameSolver::MassWay& way : ledger().ways_of_displacements(loads().live))
+    height += way.moved.y;
+  return scene_.simulation.gravity * height;
 }
 
 double StandingFrame::energy() const {

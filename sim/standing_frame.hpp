@@ -53,7 +53,7 @@ class StandingFrame {
   void step_again();
   /// In a step: velocities when it began take the place of those now, and back.
   void swap_velocities() { std::swap(v_, v_before_); }
-  void follow_hinges();  ///< after a step; one that would turn back is stiff, as it was before
+  void follow_step();  ///< after a step; a hinge that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 
   // Changes of what there is: joints break, parts leave with all their joints. Then carry_on().
@@ -76,6 +76,7 @@ class StandingFrame {
   void end_divisions(std::uint32_t count, std::span<const std::uint32_t> nodes,
                      std::vector<FrameLoads::OnPart> contacts);
   std::vector<std::uint32_t> loose_parts() const;
+  std::vector<std::uint32_t> bridging_joints() const { return in_use().bridging_joints(); }
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
@@ -87,6 +88,7 @@ class StandingFrame {
   bool is_live() const { return is_live_; }  ///< loads have changed since forget_changes()
   void forget_changes() { is_live_ = can_step_again_ = false; }
   Vec3 displacement(std::uint32_t node) const { return in_use().displacement(node); }
+  Vec3 rotation(std::uint32_t node) const { return in_use().rotation(node); }
   /// Of an elastic panel's corners from where it is without force, m; none: it is none (any more).
   std::optional<Twelve> panel_motion(std::uint32_t part) const;
   /// Velocity and angular velocity of a node; in time.
@@ -94,6 +96,9 @@ class StandingFrame {
     Vec3 velocity, spin;
   };
   Motion motion(std::uint32_t node) const;
+  /// By part; of displacements with live loads, of velocities (in time) without.
+  std::vector<FrameSolver::MassWay> ways() const;
+  std::vector<FrameSolver::MassWay> speeds() const;
 
   double kinetic() const;    ///< J
   double strain() const;     ///< J
@@ -120,7 +125,7 @@ class StandingFrame {
   /// Before a step that may have to be done again.
   struct Moment {
     std::vector<double> u, v, f;
-    FrameLoads pushed, shaken;
+    FrameLoads laid, pushed, shaken;
     MotionLosses losses;
     double given = 0;
   };
@@ -147,6 +152,7 @@ class StandingFrame {
     double stiffness = 1, mass = 0;  ///< so much of K and of M
   };
   Factored factored_in_time() const;
+  double solve_pushed();
   FrameSolverParams dynamic_params() const;
   bool may_ring() const;
   void begin_dynamic();
@@ -154,13 +160,17 @@ class StandingFrame {
   void make_dynamic();
   void start_anew(const std::vector<Hinge>& hinges);
   std::uint32_t known_part(std::uint32_t part) const;
+  std::vector<FrameSolver::MassWay> by_part(std::vector<FrameSolver::MassWay> ways) const;
   void move_on();
   void find_momentum() const;
   void account_for_damping();
   void note_residual(const std::vector<double>& mass_way, const std::vector<double>& spring_way);
   void take_state(const FrameSolver& old, const std::vector<double>& u,
                   const std::vector<double>& v);
+  void go_back();
   std::vector<Hinge> stiff_hinges() const;
+  std::vector<Hinge> turned_back(const std::vector<Hinge>& now) const;
+  void follow_hinges();
   bool turn_endlessly(const std::vector<Hinge>& hinges) const;
   void hold_hinges(std::vector<Hinge> hinges);
 
@@ -181,7 +191,8 @@ class StandingFrame {
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;   ///< by joint
-  FrameLoads pushed_, shaken_;  ///< contacts and motion of the ground at the last loads
+  /// When it rings: the last loads, and of them contacts and motion of the ground.
+  FrameLoads laid_, pushed_, shaken_;
   Moment before_step_;
   Undivided undivided_;
   bool rings_ = false, has_rung_ = false, is_live_ = false, can_step_again_ = false;

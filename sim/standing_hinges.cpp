@@ -70,19 +70,48 @@ void StandingFrame::hold_hinges(std::vector<Hinge> hinges) {
   }
 }
 
-void StandingFrame::follow_hinges() {
-  if (hinges_.empty()) return;
-  const std::vector<Hinge> now = in_use().hinges();
+/// Flowing ones that have turned back since, as they were, stiff.
+std::vector<StandingFrame::Hinge> StandingFrame::turned_back(const std::vector<Hinge>& now) const {
   assert(now.size() == hinges_.size() && "hinges come and go when breaks are settled");
   std::vector<Hinge> stiff;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!now[i].flows) continue;
     const double work = dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
-    losses_.plastic += work;
-    if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
     if (work >= -kTurnsBack * length(now[i].moment)) continue;
     stiff.push_back(hinges_[i]);
     stiff.back().flows = false;
+  }
+  return stiff;
+}
+
+/// In time the step is done again with hinges stiff that would turn back in it: their free way back
+/// is none that they went.
+void StandingFrame::follow_step() {
+  if (hinges_.empty()) return;
+  for (std::size_t round = 0; in_time() && round < hinges_.size(); ++round) {
+    const std::vector<Hinge> stiff = turned_back(in_use().hinges());
+    if (stiff.empty()) break;
+    go_back();
+    // Its moment is that of its rotation: nothing changes yet.
+    dynamic_.frame->set_hinges(stiff);
+    dynamic_.frame->load_vector(laid_, f_);
+    dynamic_.frame->set_displacements(u_, laid_);
+    hinges_ = in_use().hinges();
+    begin_step();
+    end_step();
+  }
+  follow_hinges();
+}
+
+void StandingFrame::follow_hinges() {
+  if (hinges_.empty()) return;
+  const std::vector<Hinge> now = in_use().hinges();
+  const std::vector<Hinge> stiff = turned_back(now);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (!now[i].flows) continue;
+    const double work = dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+    losses_.plastic += work;
+    if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
   }
   hinges_ = now;
   if (!stiff.empty()) set_hinges(stiff);

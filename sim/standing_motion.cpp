@@ -39,8 +39,8 @@ void StandingFrame::wake() {
 void StandingFrame::begin_step() {
   if (!in_time()) return;
   can_step_again_ = hinges_.empty() && !contacts_.empty();
-  if (can_step_again_ && !scene_.projectiles.empty())
-    before_step_ = {u_, v_, f_, pushed_, shaken_, losses_, given_};
+  if (!hinges_.empty() || (can_step_again_ && !scene_.projectiles.empty()))
+    before_step_ = {u_, v_, f_, laid_, pushed_, shaken_, losses_, given_};
   find_momentum();
   dynamic_.frame->stiffness_times(u_, springs_);
   v_before_ = v_;
@@ -70,16 +70,22 @@ void StandingFrame::end_step() {
   account_for_damping();
 }
 
-void StandingFrame::step_again() {
+/// To where the last step began.
+void StandingFrame::go_back() {
   u_ = before_step_.u;
   v_ = before_step_.v;
   is_momentum_known_ = false;
   f_ = before_step_.f;
+  laid_ = before_step_.laid;
   pushed_ = before_step_.pushed;
   shaken_ = before_step_.shaken;
   losses_ = before_step_.losses;
   given_ = before_step_.given;
-  dynamic_.frame->set_displacements(u_, loads());
+  dynamic_.frame->set_displacements(u_, laid_);
+}
+
+void StandingFrame::step_again() {
+  go_back();
   begin_step();
   end_step();
 }
@@ -101,6 +107,7 @@ void StandingFrame::move_on() {
   losses_.contact -= (contact_after - contact_before) / 2;
   given_ += (ground_after - ground_before) / 2;
   if (touched || shaken) solver.set_displacements(u_, now);  // its loads again
+  laid_ = now;
   pushed_ = pushes;
   shaken_ = shakes;
 }
@@ -164,6 +171,7 @@ void StandingFrame::stand_on() {
   is_momentum_known_ = false;
   dynamic_.frame->load_vector(now, f_);
   dynamic_.frame->set_displacements(u_, now);
+  laid_ = now;
   pushed_ = touching();
   shaken_ = shaking();
 }

@@ -26,6 +26,13 @@ struct Support {
   Vec3 share;              ///< force on it by weight that the sleeper has to hand on
 };
 
+/// Two bodies' parts overlapped from the start: so deep, m.
+struct Overlap {
+  BodyId other = kNoBody;
+  std::uint32_t part = 0, part_of_other = 0;
+  double depth = 0;
+};
+
 struct Body {
   explicit Body(Solid of);
   ~Body();
@@ -52,6 +59,7 @@ struct Body {
   bool is_merged = false;         ///< asleep, and touching it wakes it no more
   std::vector<RigidJoint*> joints;   ///< by age
   std::vector<const Body*> passes;   ///< bodies that it never touches
+  std::vector<Overlap> overlaps;     ///< that are not pushed out
   std::vector<const Body*> near;     ///< up to two joints away, sorted; valid if near_is_known
   bool near_is_known = true;
 

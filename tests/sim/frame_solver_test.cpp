@@ -483,6 +483,34 @@ TEST(FrameSolver, ASlabOnTwoJointsIsLoose) {
   EXPECT_TRUE(solver.loose_parts().empty());
 }
 
+TEST(FrameSolver, ASlabHoldsNoPieceToTheRest) {
+  const Frame frame = tower(2, 2, 1);
+  FrameSolver solver(frame);
+  EXPECT_TRUE(solver.bridging_joints().empty());
+  std::vector<std::uint32_t> broken;
+  for (const char* name : {"beam_x_0_0_0@post_1_0_0", "beam_x_0_1_0@post_1_1_0"})
+    broken.push_back(joint_of(frame, name));
+  for (std::uint32_t j = 0; j < frame.joints.size(); ++j)
+    if (frame.joints[j].b == kNoPart && frame.joints[j].point.x > 1) broken.push_back(j);
+  solver.break_joints(broken);
+  // Two posts and the beam between them hang on nothing but the slab.
+  EXPECT_EQ(solver.bridging_joints(), std::vector{joint_of(frame, "slab_0_0_0@beam_z_1_0_0")});
+}
+
+TEST(FrameSolver, WaysOfMassesAreTheWorkOfTheirWeight) {
+  const Frame frame = tower(3, 2, 2);
+  FrameSolver solver(frame);
+  solver.break_joints(std::vector{joint_of(frame, "beam_x_0_0_0@post_1_0_0"),
+                                  joint_of(frame, "slab_1_0_1@beam_x_1_0_1")});
+  const FrameLoads loads{.live = std::vector<double>(frame.slabs.size(), 2e3)};
+  solver.solve(loads);
+  double sum = 0;
+  for (const FrameSolver::MassWay& way : solver.ways_of_displacements(loads.live))
+    sum += way.moved.y;
+  EXPECT_LT(sum, 0);
+  EXPECT_LT(relative(-kG * sum, solver.work_of(loads)), 1e-12);
+}
+
 TEST(FrameSolver, APushOnASlabIsSharedByItsJoints) {
   const Frame frame = tower(2, 2, 1);
   FrameSolver solver(frame);

@@ -215,6 +215,42 @@ TEST(Hybrid, PieceThatLeavesHasTheMomentumOfItsParts) {
               2e-3 * length_of_beam * -momentum);
 }
 
+/// Where it hung: the frame's sag is no height to fall again, and what it had stored is lost.
+TEST(Hybrid, PieceStartsWhereItHungAndItsStrainIsLost) {
+  Rig rig(hybrid_scene(2, 2, 2));
+  const double strain = rig.motion->strain(), sag = rig.motion->potential();
+  ASSERT_GT(strain, 1);
+  rig.cut(rig.feet());
+  ASSERT_EQ(rig.motion->bodies(), 1u);
+  EXPECT_NEAR(rig.motion->losses().fracture, strain, 1e-9 * strain);
+  EXPECT_NEAR(rig.world.potential_energy() - rig.motion->baseline(), sag, 1e-6 * -sag);
+}
+
+/// It lies on three beams instead of four, and has not moved.
+TEST(Hybrid, SlabThatLosesAJointGivesNoEnergy) {
+  Rig rig(hybrid_scene(3, 2, 2));
+  const double before = rig.motion->strain() + rig.motion->potential();
+  rig.cut({joint_named(rig.scene.frame, "slab_0_0_0@beam_x_0_0_0")});
+  EXPECT_EQ(rig.motion->bodies(), 0u);
+  EXPECT_NEAR(rig.motion->losses().fracture, 0, 1e-9 * -before);
+  EXPECT_NEAR(rig.motion->strain() + rig.motion->potential(), before, 1e-9 * -before);
+}
+
+/// Each break on its own, all on the way down: strain is released, nothing is lifted.
+TEST(Hybrid, NoBreakOfAFrameAtRestGivesEnergy) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    Rig rig(hybrid_scene(3, 2, 2));
+    std::mt19937 random(seed);
+    double last = 0;
+    for (int i = 0; i < 12; ++i) {
+      rig.cut({static_cast<std::uint32_t>(random() % rig.scene.frame.joints.size())});
+      const double now = rig.motion->losses().fracture;
+      EXPECT_GE(now, last - 1e-6) << "seed " << seed << ", break " << i;
+      last = now;
+    }
+  }
+}
+
 TEST(Hybrid, SplittingAFlyingPieceKeepsMomentumAndAngularMomentum) {
   Rig rig(hybrid_scene(2, 2, 3));
   rig.cut(rig.feet());

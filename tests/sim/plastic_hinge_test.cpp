@@ -239,6 +239,37 @@ TEST(PlasticHinge, EnergyIsAccountedForToRounding) {
   EXPECT_LT(std::fabs(r.energy.numerical), 1e-9 * std::fabs(r.energy_in));
 }
 
+TEST(PlasticHinge, EnergyOfAFrameInBalanceIsAccountedForToRounding) {
+  CollapseScene scene = post_removal(0.1, 1);
+  scene.scenario.remove.clear();
+  scene.scenario.load_rate = 20000;
+  scene.simulation.quasi_static = true;
+  const CollapseResult r = simulate_collapse(scene);
+  EXPECT_FALSE(r.yielded_joints.empty());
+  EXPECT_GT(r.plastic, 0);
+  EXPECT_GE(r.damping, 0);
+  EXPECT_LT(std::fabs(r.energy.numerical), 1e-9 * std::fabs(r.energy_in));
+}
+
+/// Steps so long that a hinge turns back by more than it had turned.
+TEST(PlasticHinge, ShakenToAndFroItOnlyTakes) {
+  for (const double step : {0.002, 0.01, 0.03}) {
+    CollapseScene scene = heavier_cantilever(3, 0, 1);
+    scene.rules.breaking = true;
+    scene.simulation.step = step;
+    scene.scenario.ground_motion = {};
+    for (int i = 0; i <= 20; ++i) {
+      scene.scenario.ground_motion.times.push_back(0.05 * i);
+      scene.scenario.ground_motion.accelerations.push_back({0, i % 2 == 0 ? 150.0 : -150.0, 0});
+    }
+    const CollapseResult r = simulate_collapse(scene);
+    EXPECT_FALSE(r.yielded_joints.empty()) << step;
+    EXPECT_GT(r.plastic, 0) << step;
+    EXPECT_GE(r.damping, 0) << step;
+    EXPECT_LT(std::fabs(r.energy.numerical), 1e-9 * r.plastic) << step;
+  }
+}
+
 TEST(PlasticHinge, GivesTheSameBitsTwice) {
   const CollapseResult a = simulate_collapse(post_removal(0.1));
   const CollapseResult b = simulate_collapse(post_removal(0.1));

@@ -68,6 +68,48 @@ TEST(RigidWorld, SpinsFreelyAsTheEulerEquationsSay) {
   }
 }
 
+TEST(RigidWorld, AcceptedOverlapIsNotPushedOut) {
+  const Vec3 half{0.5, 0.5, 0.5};
+  for (const bool accepted : {false, true}) {
+    RigidWorld world({.sleep = false});
+    const BodyId id = add_block(world, block_params(100, half, {0, 0.4, 0}, 1), half);
+    if (accepted) world.accept_overlaps(id);
+    const double before = energy(world);
+    double contact = 0;
+    for (int i = 0; i < 240; ++i) {
+      world.step(1.0 / 240);
+      contact += world.work().contact;
+    }
+    EXPECT_NEAR(world.centre(id).y, accepted ? 0.4 : 0.5, 2e-3);
+    EXPECT_NEAR(energy(world) + contact, before, 1e-9 * before);
+    if (!accepted) continue;
+    EXPECT_GT(contact, -1e-9 * before);
+    // Once it has been off the ground it meets it as it is.
+    world.set_velocity(id, {0, 3, 0}, {});
+    for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
+    EXPECT_NEAR(world.centre(id).y, 0.5, 2e-3);
+  }
+}
+
+TEST(RigidWorld, WhatLiesOnASinkingColliderSinksAndGainsNothing) {
+  const Vec3 half{0.5, 0.5, 0.5};
+  RigidWorld world({.has_ground = false});
+  const Prism prism = block(2, 0.5, 2);
+  const BodyId floor = world.add_static({{0, -0.5, 0}, {}}, {&prism, 1}, {}, 0);
+  const BodyId id = add_block(world, block_params(100, half, {0, 0.5, 0}, 1), half);
+  const double before = energy(world);
+  double contact = 0;
+  for (int i = 1; i <= 480; ++i) {
+    if (i <= 240) world.move_static(floor, {{0, -0.5 - 0.001 * i, 0}, {}});
+    world.step(1.0 / 240);
+    contact += world.work().contact;
+  }
+  EXPECT_NEAR(world.centre(id).y, 0.5 - 0.24, 2e-3);
+  EXPECT_GT(contact, 0.99 * 100 * kGravity * 0.24);
+  // Each millimetre ends in an approach at creeping speed.
+  EXPECT_NEAR(energy(world) + contact, before, 1e-5 * before);
+}
+
 TEST(RigidWorld, BallMeetsChunkWithTheRestitutionAskedFor) {
   for (const double speed : {2.0, 20.0}) {
     for (const double dt : {1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
