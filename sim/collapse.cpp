@@ -369,14 +369,18 @@ void CollapseRun::record(double time) {
     if (track == kNoTrack) track = recorder_.add_track(kNoTrack);
     recorder_.add_pose(track, pose());
   };
-  const std::vector<std::uint32_t> bent = follow_kinks();
+  const Kinks::Poses bent = follow_kinks();
+  const auto drawn = [&](std::uint32_t i) {
+    const auto found = std::ranges::lower_bound(bent, i, {}, &Kinks::Poses::value_type::first);
+    return found != bent.end() && found->first == i ? &found->second : nullptr;
+  };
   const bool any_moving = motion_->any_moving() || !bent.empty();
   if (!any_moving) result_.body_steps_asleep += present_parts_;
   if (!any_moving) result_.poses_not_recorded += present_parts_;
   for (std::uint32_t i = 0; any_moving && i < parts_.size(); ++i)
     if (!std::isfinite(parts_[i].removed))
-      note(motion_->is_moving(i) || std::ranges::binary_search(bent, i), parts_[i].track,
-           [&] { return motion_->pose(i); });
+      note(motion_->is_moving(i) || drawn(i), parts_[i].track,
+           [&] { return drawn(i) ? *drawn(i) : motion_->pose(i); });
   for (Shot& shot : shots_)
     if (shot.body != kNoBody)
       note(world_.is_awake(shot.body), shot.track, [&] { return world_.pose(shot.body); });

@@ -116,7 +116,7 @@ class CollapseRun {
   bool is_inside(std::uint32_t joint) const;
   void divide_members(const std::vector<Weak>& weak);
   std::array<PartSolid, 2> divide_part(const MemberDivision& division);
-  std::vector<std::uint32_t> follow_kinks();
+  Kinks::Poses follow_kinks();
 
   Vec3 place_of(std::uint32_t joint) const;
   void break_joints(std::vector<Failure> failures);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sim/part_pose.hpp"
+
 namespace sunder {
 namespace {
 
@@ -75,7 +77,8 @@ Vec3 turned_along(Vec3 a, Vec3 b, Vec3 v) {
 
 /// About a place, so that what was in the direction of `was` is in that of `is`.
 PartSolid swung(PartSolid solid, Vec3 about, Vec3 was, Vec3 is) {
-  const Vec3 from = 1 / length(was - about) * (was - about), to = 1 / length(is - about) * (is - about);
+  const Vec3 from = 1 / length(was - about) * (was - about),
+             to = 1 / length(is - about) * (is - about);
   solid.centre = about + turned_along(from, to, solid.centre - about);
   solid.axes = {turned_along(from, to, solid.axes.x), turned_along(from, to, solid.axes.y),
                 turned_along(from, to, solid.axes.z)};
@@ -97,9 +100,12 @@ PartSolid cut_out(const PartSolid& solid, double low, double high) {
   // Of a prism: m l²/12 by its length l = 2 half_length, across it, besides what its outline gives.
   const double less = solid.mass / 3 * solid.half_length * solid.half_length;
   const double more = part.mass / 3 * part.half_length * part.half_length;
-  part.inertia = {share * (solid.inertia.xx - less) + more, share * (solid.inertia.yy - less) + more,
-                  share * solid.inertia.zz,                 share * solid.inertia.xy,
-                  share * solid.inertia.xz,                 share * solid.inertia.yz};
+  part.inertia = {share * (solid.inertia.xx - less) + more,
+                  share * (solid.inertia.yy - less) + more,
+                  share * solid.inertia.zz,
+                  share * solid.inertia.xy,
+                  share * solid.inertia.xz,
+                  share * solid.inertia.yz};
   return part;
 }
 
@@ -180,26 +186,27 @@ std::pair<PartSolid, PartSolid> divided(const PartSolid& solid, double z) {
 
 void Kinks::add(const MemberDivision& division, const std::array<PartSolid, 2>& stood,
                 const Displacement& displacement) {
-  bends_.push_back({division, stood, off_line(division, displacement)});
+  bends_.push_back(
+      {division, stood, {pose_of(stood[0]), pose_of(stood[1])}, off_line(division, displacement)});
 }
 
-std::vector<std::uint32_t> Kinks::follow(std::vector<PartSolid>& solids,
-                                         const Displacement& displacement, const Holds& holds) {
-  std::vector<std::uint32_t> moved;
-  for (const auto& [division, stood, start] : bends_) {
+Kinks::Poses Kinks::follow(const Displacement& displacement, const Holds& holds) {
+  Poses moved;
+  for (Bend& bend : bends_) {
+    const MemberDivision& division = bend.division;
     if (!holds(division)) continue;
-    const Vec3 way = off_line(division, displacement) - start;
+    const Vec3 way = off_line(division, displacement) - bend.start;
     const Vec3 node = frame_.nodes[division.node].position;
-    for (const bool is_second : {false, true}) {
-      const std::uint32_t part = is_second ? division.part : division.member;
-      const Vec3 end = frame_.nodes[is_second ? division.to : division.from].position;
-      const PartSolid solid = swung(stood[is_second ? 1 : 0], end, node, node + way);
-      if (solid.centre == solids[part].centre && solid.axes.z == solids[part].axes.z) continue;
-      solids[part] = solid;
-      moved.push_back(part);
+    for (const std::size_t i : {0, 1}) {
+      const std::uint32_t part = i == 1 ? division.part : division.member;
+      const Vec3 end = frame_.nodes[i == 1 ? division.to : division.from].position;
+      const Pose pose = pose_of(swung(bend.stood[i], end, node, node + way));
+      if (pose == bend.drawn[i]) continue;
+      bend.drawn[i] = pose;
+      moved.emplace_back(part, pose);
     }
   }
-  std::ranges::sort(moved);
+  std::ranges::sort(moved, {}, &Poses::value_type::first);
   return moved;
 }
 

@@ -10,8 +10,9 @@
 
 namespace sunder {
 
-/// A member divides in two parts at a node of its own. The first part keeps its number and its start,
-/// the second one is a member after all others: slabs and walls have higher numbers from then on.
+/// A member divides in two parts at a node of its own. The first part keeps its number and its
+/// start, the second one is a member after all others: slabs and walls have higher numbers from
+/// then on.
 struct MemberCut {
   std::uint32_t member = 0;
   double at = 0;                  ///< m from its start, between its ends
@@ -58,14 +59,15 @@ class Kinks {
   /// A member that stood divided; its parts as they stood.
   void add(const MemberDivision& division, const std::array<PartSolid, 2>& stood,
            const Displacement& displacement);
-  /// Draws the parts that hold together and stand anew. Returns those that moved, ascending.
-  std::vector<std::uint32_t> follow(std::vector<PartSolid>& solids,
-                                    const Displacement& displacement, const Holds& holds);
+  /// Poses of the parts that hold together and stand, where they changed; by part.
+  using Poses = std::vector<std::pair<std::uint32_t, Pose>>;
+  Poses follow(const Displacement& displacement, const Holds& holds);
 
  private:
   struct Bend {
     MemberDivision division;
     std::array<PartSolid, 2> stood;
+    std::array<Pose, 2> drawn;
     Vec3 start;  ///< of the node from the line between the ends, m
   };
 

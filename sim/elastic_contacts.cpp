@@ -65,12 +65,20 @@ Pose ElasticMotion::displacement_of(std::uint32_t part) const {
   return small_motion(middle, way, turn);
 }
 
+bool breaks_into_chunks(const Frame& frame, std::uint32_t part) {
+  if (part < frame.slab_part(0)) return false;
+  if (part < frame.wall_part(0)) return frame.slabs[part - frame.slab_part(0)].pattern != kNoPart;
+  return frame.walls[part - frame.wall_part(0)].pattern != kNoPart;
+}
+
 /// What something touches stands for the world where it is in the frame. Not in balance at any
-/// time: what is left of a frame there jumps.
+/// time: what is left of a frame there jumps. Not of panels that break: their chunks stand where
+/// they were drawn, so the whole does.
 void ElasticMotion::move_colliders() {
   if (!standing_.in_time()) return;
   for (const std::uint32_t part : touches_.active())
-    if (bodies_.stands(part)) bodies_.move_collider(part, displacement_of(part));
+    if (bodies_.stands(part) && !breaks_into_chunks(frame_, part))
+      bodies_.move_collider(part, displacement_of(part));
 }
 
 /// Of the place that is touched, along the force, beyond the speed of what struck it.

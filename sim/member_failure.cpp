@@ -26,7 +26,8 @@ std::vector<CollapseRun::Weak> CollapseRun::weak_members() {
   MemberSpan span;
   for (std::uint32_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];
-    if (member.is_part || !motion_->find_span(m, span) || !may_fail_inside(span, member.strength)) continue;
+    if (member.is_part || !motion_->find_span(m, span) || !may_fail_inside(span, member.strength))
+      continue;
     if (const auto place = weakest_inside(span, member.strength, member.margin))
       weak.push_back({m, *place});
   }
@@ -53,9 +54,8 @@ void CollapseRun::divide_members(const std::vector<Weak>& weak) {
   std::vector<MemberDivision> divisions;
   std::vector<std::array<PartSolid, 2>> solids;
   for (const MemberCut& cut : cuts) {
-    divisions.push_back(divide_member(frame_, cut, [this](std::uint32_t j) {
-      return j >= joints_.size() || joints_[j].intact;
-    }));
+    divisions.push_back(divide_member(
+        frame_, cut, [this](std::uint32_t j) { return j >= joints_.size() || joints_[j].intact; }));
     solids.push_back(divide_part(divisions.back()));
   }
   intact_joints_ += frame_.joints.size() - joints_.size();
@@ -108,15 +108,14 @@ std::array<PartSolid, 2> CollapseRun::divide_part(const MemberDivision& division
   return {first, second};
 }
 
-/// Draws anew what bends between its ends while it stands.
-std::vector<std::uint32_t> CollapseRun::follow_kinks() {
+/// Poses in which what bends between its ends is drawn while it stands.
+Kinks::Poses CollapseRun::follow_kinks() {
   if (kinks_.none()) return {};
-  return kinks_.follow(
-      solids_, [this](std::uint32_t node) { return motion_->displacement(node); },
-      [this](const MemberDivision& division) {
-        return joints_[division.joint].intact && motion_->stands(division.member) &&
-               motion_->stands(division.part);
-      });
+  return kinks_.follow([this](std::uint32_t node) { return motion_->displacement(node); },
+                       [this](const MemberDivision& division) {
+                         return joints_[division.joint].intact &&
+                                motion_->stands(division.member) && motion_->stands(division.part);
+                       });
 }
 
 }  // namespace sunder
