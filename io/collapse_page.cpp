@@ -7,15 +7,22 @@
 namespace sunder {
 namespace {
 
-std::string joint_name(const CollapseReport& report, std::uint32_t joint) {
-  assert(joint < report.scene.frame.joints.size());
-  return report.scene.frame.joints[joint].name;
+/// Those that came in where members divided too.
+std::size_t joint_count(const CollapseReport& report) {
+  return std::max(report.scene.frame.joints.size(), report.result.recording.joints.size());
+}
+
+std::size_t part_count(const CollapseReport& report) {
+  return report.scene.frame.part_count() + report.result.members_divided;
+}
+
+const std::string& joint_name(const CollapseReport& report, std::uint32_t joint) {
+  return joint_name(report.scene.frame, report.result, joint);
 }
 
 std::string lede_of(const CollapseReport& report) {
   const CollapseResult& r = report.result;
-  const Frame& frame = report.scene.frame;
-  const std::string joints = count_text(frame.joints.size()), time = moment_text(r.simulated_s);
+  const std::string joints = count_text(joint_count(report)), time = moment_text(r.simulated_s);
   const auto first = std::ranges::find_if(
       r.broken_joints, [](const JointBreak& each) { return each.mode != "removed"; });
   if (first == r.broken_joints.end()) {
@@ -29,7 +36,7 @@ std::string lede_of(const CollapseReport& report) {
                                                : "; 1 would break, but joints were told to hold."});
   }
   return joined({count_text(r.broken_joints.size()), " of ", joints, " joints broke and ",
-                 count_text(r.parts_freed), " of ", count_text(frame.part_count()),
+                 count_text(r.parts_freed), " of ", count_text(part_count(report)),
                  " parts came loose in ", time, ". The first joint to go was ",
                  joint_name(report, first->joint), ", at ", moment_text(first->time), " (",
                  first->mode, ")."});
@@ -37,12 +44,11 @@ std::string lede_of(const CollapseReport& report) {
 
 std::vector<Tile> tiles_of(const CollapseReport& report) {
   const CollapseResult& r = report.result;
-  const Frame& frame = report.scene.frame;
   std::vector<Tile> tiles = {
       {"joints broken", count_text(r.broken_joints.size()),
-       "of " + count_text(frame.joints.size()) +
+       "of " + count_text(joint_count(report)) +
            (r.yielded_joints.empty() ? "" : ", " + count_text(r.yielded_joints.size()) + " bent")},
-      {"parts loose", count_text(r.parts_freed), "of " + count_text(frame.part_count())},
+      {"parts loose", count_text(r.parts_freed), "of " + count_text(part_count(report))},
       {"utilisation at rest", digits_text(r.utilisation_at_rest),
        "1 breaks; later up to " + digits_text(r.max_utilisation)}};
   if (r.panels > 0)
@@ -80,7 +86,7 @@ std::vector<Html> curves_of(const CollapseReport& report) {
   if (series.empty()) return {};
   std::vector<Html> curves = {
       count_curve("Broken joints", series, &RunSample::broken_joints, 1,
-                  joined({"Of ", count_text(report.scene.frame.joints.size()), " joints."})),
+                  joined({"Of ", count_text(joint_count(report)), " joints."})),
       utilisation_curve(series,
                         "Demand by capacity of the joint or post that is used most; it breaks at "
                         "the dashed line.")};

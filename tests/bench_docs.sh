@@ -15,6 +15,7 @@ places=$(sed -n 's/^<!-- bench: \(.*\) -->$/\1/p' docs/*.md)
 # Names of blocks as the sources have them: "pattern window".
 printed=$(grep -hoE "\"($(tr '\n' '|' <<< "$benches" | sed 's/|$//')) [a-z0-9-]+\"" bench/*.cpp |
   tr -d '"' | sort -u)
+printed+=$'\nstress'  # ./dev stress docs
 
 for bench in $benches; do
   grep -q "^$bench " <<< "$places" || fault "no page shows anything of ./dev bench $bench"

@@ -747,7 +747,7 @@ s.json --history a.json --report ./a.json|a.json is written twice
 s.json -o a.glb --at -1|--at -1: expected seconds
 s.json -o a.glb --at 1s|--at 1s: expected seconds
 s.json -o a.glb --at inf|--at inf: expected seconds
-s.json --report r.json --at 1|--at says which moment -o FILE.glb, .gltf, .obj, .svg or .png shows
+s.json --report r.json --at 1|--at says which moment -o FILE.glb, .gltf, .obj, .svg, .png or .html shows
 s.json -o a.glb --at 1.1|--at 1.1 is after the end of the run, which lasts 1 s
 s.json -o a.glb --at 1 --at 2|--at is given twice
 s.json t.json -o a.glb|"t.json" belongs to no option
