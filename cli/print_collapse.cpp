@@ -49,8 +49,8 @@ void print_damage(const Frame& frame, const CollapseResult& r) {
   }
   std::fprintf(
       stderr, "%zu of %zu joints broken%s, %llu of %u parts freed, utilisation up to %.4g\n",
-      r.broken_joints.size(), std::max(frame.joints.size(), r.recording.joints.size()), modes.empty() ? "" : (modes + ")").c_str(),
-      as_count(r.parts_freed),
+      r.broken_joints.size(), std::max(frame.joints.size(), r.recording.joints.size()),
+      modes.empty() ? "" : (modes + ")").c_str(), as_count(r.parts_freed),
       frame.part_count() + static_cast<std::uint32_t>(r.members_divided), r.max_utilisation);
   for (std::size_t i = 0; i < std::min(kShown, r.broken_joints.size()); ++i)
     print_break(frame, r, r.broken_joints[i]);

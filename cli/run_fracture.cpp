@@ -211,8 +211,8 @@ int run_fracture(const Options& options) {
   watch.lap("fracture");
 
   const auto wants_report = [](const auto& path) { return path.extension() == ".json"; };
-  const bool report_wanted =
-      options.json || !options.reports.empty() || std::ranges::any_of(options.outputs, wants_report);
+  const bool report_wanted = options.json || !options.reports.empty() ||
+                             std::ranges::any_of(options.outputs, wants_report);
   const bool meshed = report_wanted || std::ranges::any_of(options.outputs, needs_meshes);
   MeshedAsset meshes = meshed ? mesh_asset(fractured.walls, threads, fractured.solids)
                               : MeshedAsset{fractured.walls, {}, fractured.solids, {}};

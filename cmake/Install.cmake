@@ -12,7 +12,7 @@ set(sunder_sim_headers blow buckling collapse frame impact joint_strength materi
                       post_stability projectile recording rigid_world section simulation_params spin)
 set(sunder_io_headers collapse_report collapse_scene export export_recording impact_report
                       impact_scene import joint_history json_lines model output page png report
-                      report_page error_front run_report scene)
+                      report_page error_front run_report scene text_writer)
 foreach(layer meshing fracture sim io)
   foreach(header ${sunder_${layer}_headers})
     install(FILES ${PROJECT_SOURCE_DIR}/${layer}/${header}.hpp

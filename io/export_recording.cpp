@@ -29,9 +29,10 @@ constexpr int kMostFrames = 60;
     throw Error(ErrorCode::usage, "an .obj holds one moment of a recording: say at which time");
   }
   if (of_moment) {
-    throw Error(ErrorCode::usage,
-                "suffix \"" + suffix +
-                    "\" of one moment of a recording is not one of .glb .gltf .obj .svg .png .html");
+    throw Error(
+        ErrorCode::usage,
+        "suffix \"" + suffix +
+            "\" of one moment of a recording is not one of .glb .gltf .obj .svg .png .html");
   }
   throw Error(ErrorCode::usage,
               "suffix \"" + suffix + "\" of a recording is not one of .glb .gltf .svg .png .html");

@@ -25,7 +25,6 @@ class BuildingBodies {
                  const std::vector<PartSolid>& solids);
 
   bool stands(std::uint32_t part) const { return piece_of_[part] == kStanding; }
-  bool is_gone(std::uint32_t part) const { return piece_of_[part] == kGone; }
   bool is_loose(std::uint32_t part) const { return piece_of_[part] < pieces_.size(); }
   std::uint32_t piece_of(std::uint32_t part) const { return piece_of_[part]; }  ///< of a loose one
   std::span<const Piece> pieces() const { return pieces_; }  ///< those that are no more too

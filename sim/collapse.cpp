@@ -490,7 +490,7 @@ Recording CollapseRun::recording() {
     const PartSolid& solid = solids_[i];
     recording.parts.push_back({frame_.part_name(i), solid.outline, solid.half_length,
                                solid.material, solid.mass,
-                               parts_[i].stood.value_or(pose_of(solid)), parts_[i].track,
+                               pose_of(solid), parts_[i].track,
                                i < frame_.members.size(), parts_[i].removed});
   }
   for (std::uint32_t j = 0; j < joints_.size(); ++j) {

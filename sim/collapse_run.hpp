@@ -26,7 +26,6 @@ class CollapseRun {
   struct Part {
     std::uint32_t track = kNoTrack;
     double removed = std::numeric_limits<double>::infinity();
-    std::optional<Pose> stood{};  ///< if it is not where its solid is now
   };
   /// What a member bears between its ends.
   struct Member {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "meshing/error.hpp"
 #include "sim/part_pose.hpp"
 
 namespace sunder {
@@ -118,6 +119,10 @@ std::uint32_t class_within(const Frame& frame, std::uint32_t member,
       return frame.joints[j].joint_class;
   const std::string kind = is_post(frame.members[member]) ? "post" : "beam";
   const auto found = std::ranges::find(frame.classes, kind, &JointClass::name);
+  if (found == frame.classes.end())
+    throw Error(ErrorCode::input, "member " + frame.members[member].name +
+                                      ": hangs on no joint, and there is no joint class \"" + kind +
+                                      "\" that says how it fails");
   return static_cast<std::uint32_t>(found - frame.classes.begin());
 }
 

@@ -3,6 +3,15 @@
 #include "sim/elastic_motion.hpp"
 
 namespace sunder {
+namespace {
+
+bool breaks_into_chunks(const Frame& frame, std::uint32_t part) {
+  if (part < frame.slab_part(0)) return false;
+  if (part < frame.wall_part(0)) return frame.slabs[part - frame.slab_part(0)].pattern != kNoPart;
+  return frame.walls[part - frame.wall_part(0)].pattern != kNoPart;
+}
+
+}  // namespace
 
 void ElasticMotion::note_contacts(double dt) {
   for (const Contact& contact : world_.contacts()) {
@@ -63,12 +72,6 @@ Pose ElasticMotion::displacement_of(std::uint32_t part) const {
   // A member does not turn about its own axis.
   const Vec3 turn = nodes.size() == 2 ? (1 / squares) * moment : inverse(spread) * moment;
   return small_motion(middle, way, turn);
-}
-
-bool breaks_into_chunks(const Frame& frame, std::uint32_t part) {
-  if (part < frame.slab_part(0)) return false;
-  if (part < frame.wall_part(0)) return frame.slabs[part - frame.slab_part(0)].pattern != kNoPart;
-  return frame.walls[part - frame.wall_part(0)].pattern != kNoPart;
 }
 
 /// What something touches stands for the world where it is in the frame. Not in balance at any

@@ -52,7 +52,7 @@ void ElasticMotion::end_divisions(std::span<const MemberDivision> divisions) {
     const std::uint32_t piece = bodies_.divide(division.member, division.part);
     if (piece != kNoPart) pieces.push_back(piece);
   }
-  standing_.end_divisions(count, standing, standing_contacts());
+  standing_.end_divisions(count, standing, standing_contacts(), bodies_.not_standing());
   if (!standing.empty()) fracture_ += undivided_ - standing_.energy();
   for (const std::uint32_t piece : pieces) inner_.forget(piece);
   if (!pieces.empty()) inner_.start(first_new, pieces, {}, touches_);

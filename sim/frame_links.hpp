@@ -30,8 +30,6 @@ class FrameLinks {
 
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(frame_node_.size()); }
   std::uint32_t frame_node(std::uint32_t node) const { return frame_node_[node]; }
-  /// Solver node that stands for a frame node; kFixed: on the ground; kFree: nothing ends there.
-  std::uint32_t main_node(std::uint32_t frame_node) const { return main_node_[frame_node]; }
   /// That of the ends there that intact joints hold, the first; without any that one.
   std::uint32_t moving_node(std::uint32_t frame_node) const;
   const End& end(std::uint32_t member, int end) const { return ends_[2 * member + end]; }

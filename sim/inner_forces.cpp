@@ -173,6 +173,7 @@ bool InnerForces::find_span(std::uint32_t member, MemberSpan& span) const {
 }
 
 void InnerForces::make_room(std::uint32_t first, std::uint32_t count) {
+  for (std::uint32_t& part : unheld_) part = moved_up(part, first, count);
   for (State& state : state_)
     if (state.model)
       for (std::uint32_t& part : state.model->sub.parts) part = moved_up(part, first, count);

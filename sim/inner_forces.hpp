@@ -31,7 +31,10 @@ class InnerForces {
   bool find_span(std::uint32_t member, MemberSpan& span) const;  ///< of a loose one
   /// Parts from `first` on have numbers higher by `count` now.
   void make_room(std::uint32_t first, std::uint32_t count);
-  void forget(std::uint32_t piece) { drop_model(state_[piece]); }  ///< it has other parts now
+  /// A piece, if it is known yet, has other parts now.
+  void forget(std::uint32_t piece) {
+    if (piece < state_.size()) drop_model(state_[piece]);
+  }
   bool is_live(std::uint32_t piece) const { return state_[piece].is_live; }
   bool any_live() const { return !live_.empty(); }
   /// Parts of the pieces made last that their joints cannot hold.

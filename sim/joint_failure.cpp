@@ -54,7 +54,8 @@ void CollapseRun::break_overloaded() {
 
 /// Loads redistribute after each break: most utilised first, until what is left carries.
 void CollapseRun::cascade() {
-  for (int round = 0; round < kMostRounds && motion_->settle_breaks(); ++round) {
+  bool divided = false;
+  for (int round = 0; round < kMostRounds && (motion_->settle_breaks() || divided); ++round) {
     std::vector<Failure> failures;
     read_loads(failures);
     check_posts(failures);
@@ -63,6 +64,7 @@ void CollapseRun::cascade() {
     for (const std::uint32_t j : motion_->unheld_joints())
       failures.push_back({j, joints_[j].utilisation, "unheld", "balance", {}, true});
     break_joints(std::move(failures));
+    divided = !weak.empty();
     divide_members(weak);
   }
 }
@@ -99,8 +101,8 @@ void CollapseRun::keep_most_utilised(std::vector<Failure>& failures,
   std::erase_if(weak, [&](const Weak& w) { return w.place.utilisation < kTogether * most; });
 }
 
-/// What a projectile met stood as if fixed. If joints of it, or the part itself, broke under the blow, or it ran ahead,
-/// the projectile keeps what the frame did not take up of its momentum.
+/// What a projectile met stood as if fixed. If joints of it, or the part itself, broke under the
+/// blow, or it ran ahead, the projectile keeps what the frame did not take up of its momentum.
 void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& weak) {
   if (!motion_->redistributes()) return;
   for (std::size_t i = 0; i < shots_.size(); ++i) {

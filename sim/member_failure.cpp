@@ -28,8 +28,10 @@ std::vector<CollapseRun::Weak> CollapseRun::weak_members() {
     const Member& member = members_[m];
     if (member.is_part || !motion_->find_span(m, span) || !may_fail_inside(span, member.strength))
       continue;
-    if (const auto place = weakest_inside(span, member.strength, member.margin))
+    if (const auto place = weakest_inside(span, member.strength, member.margin)) {
       weak.push_back({m, *place});
+      note_use(place->utilisation);
+    }
   }
   return weak;
 }
@@ -100,8 +102,6 @@ std::array<PartSolid, 2> CollapseRun::divide_part(const MemberDivision& division
   };
   if (parts_[m].track != kNoTrack)
     parts_[part].track = recorder_.divide_track(parts_[m].track, shift(first), shift(second));
-  parts_[m].stood = pose_of(first);
-  parts_[part].stood = pose_of(second);
   ++present_parts_;
   members_[m].is_part = true;
   members_.push_back(members_[m]);

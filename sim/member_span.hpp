@@ -17,9 +17,9 @@ struct MemberSpan {
     Vec3 force, moment;  ///< N, N m
   };
   double length = 0;
-  JointLoad start;             ///< as JointLoad: what lies beyond gives the positive cut face
-  Vec3 load_a, load_b;         ///< N/m at start and end, linear in between
-  Vec3 turn;                   ///< N m/m, the same everywhere
+  JointLoad start;            ///< as JointLoad: what lies beyond gives the positive cut face
+  Vec3 load_a, load_b;        ///< N/m at start and end, linear in between
+  Vec3 turn;                  ///< N m/m, the same everywhere
   std::vector<Point> points;  ///< ascending
 };
 
@@ -33,10 +33,10 @@ struct WeakPlace {
   std::string_view component;
 };
 
-/// The most utilised place at least `margin` from both ends where the utilisation has a peak of 1 or
-/// more. Peaks are looked for where point loads are and where a sum of N, M_y and M_z, each by its
-/// resistance, has an extreme: shear 0 for one bending moment. So they are exact for the rules that
-/// add up ratios, and for any rule under bending about one axis. A constant or monotonous
+/// The most utilised place at least `margin` from both ends where the utilisation has a peak of 1
+/// or more. Peaks are looked for where point loads are and where a sum of N, M_y and M_z, each by
+/// its resistance, has an extreme: shear 0 for one bending moment. So they are exact for the rules
+/// that add up ratios, and for any rule under bending about one axis. A constant or monotonous
 /// utilisation has none: that is for the end joints. O(point loads²).
 std::optional<WeakPlace> weakest_inside(const MemberSpan& span, const JointStrength& strength,
                                         double margin);

@@ -45,7 +45,8 @@ void StandingFrame::begin_divisions(std::span<const MemberCut> cuts) {
 }
 
 void StandingFrame::end_divisions(std::uint32_t count, std::span<const std::uint32_t> nodes,
-                                  std::vector<FrameLoads::OnPart> contacts) {
+                                  std::vector<FrameLoads::OnPart> contacts,
+                                  std::vector<std::uint32_t> not_standing) {
   const std::uint32_t first = frame_.slab_part(0);
   members_since_ += count;
   if (nodes.empty()) return;
@@ -55,16 +56,16 @@ void StandingFrame::end_divisions(std::uint32_t count, std::span<const std::uint
     ahead_ = {};
     stops_ = false;
   }
-  for (std::uint32_t& part : gone_) part = moved_up(part, first, members_since_);
   for (auto& [part, mass] : masses_) part = moved_up(part, first, members_since_);
   for (Panel& panel : panels_)
     panel.element.part = moved_up(panel.element.part, first, members_since_);
   members_since_ = 0;
   frame_ = scene_.frame;
+  gone_ = std::move(not_standing);
   std::erase_if(panels_,
                 [&](const Panel& p) { return has_divided_edge(frame_, p.element, nodes); });
   set_contacts(std::move(contacts));
-  const Solver old = std::move(dynamic_);
+  dynamic_ = {};
   const std::vector<double> u = u_, v = v_;
   const double quiet_for = quiet_for_;
   start_anew(undivided_.hinges);

@@ -71,10 +71,11 @@ class StandingFrame {
     return in_use().find_span(member, span);
   }
   void begin_divisions(std::span<const MemberCut> cuts);  ///< the frame is about to change
-  /// The frame has so many members more, and what stands these nodes, in the order of the cuts: then
-  /// solvers are made anew, the state is the same.
+  /// The frame has so many members more, and what stands these nodes, in the order of the cuts:
+  /// then solvers are made anew, the state is the same.
   void end_divisions(std::uint32_t count, std::span<const std::uint32_t> nodes,
-                     std::vector<FrameLoads::OnPart> contacts);
+                     std::vector<FrameLoads::OnPart> contacts,
+                     std::vector<std::uint32_t> not_standing);
   std::vector<std::uint32_t> loose_parts() const;
   std::vector<std::uint32_t> bridging_joints() const { return in_use().bridging_joints(); }
 
@@ -175,7 +176,7 @@ class StandingFrame {
   void hold_hinges(std::vector<Hinge> hinges);
 
   const CollapseScene& scene_;
-  Frame frame_;                     ///< as the solvers know it
+  Frame frame_;                      ///< as the solvers know it
   std::uint32_t members_since_ = 0;  ///< of the scene's frame: they came in where nothing stands
   Solver static_, dynamic_;
   std::atomic<bool> stops_ = false;                  ///< nobody waits for `ahead_` any more
@@ -190,7 +191,7 @@ class StandingFrame {
       scratch_;
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
-  std::vector<Hinge> hinges_;   ///< by joint
+  std::vector<Hinge> hinges_;  ///< by joint
   /// When it rings: the last loads, and of them contacts and motion of the ground.
   FrameLoads laid_, pushed_, shaken_;
   Moment before_step_;

@@ -111,7 +111,9 @@ TEST(MemberSpan, NoSampleIsWorseThanThePlaceOrTheBoundSays) {
   int found = 0, cleared = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const MemberSpan span = random_span(seed, 2e3 * (1 + 5 * static_cast<double>(seed % 60)));
-    const auto use = [&](double at) { return utilisation(load_at(span, at, true), strength).total; };
+    const auto use = [&](double at) {
+      return utilisation(load_at(span, at, true), strength).total;
+    };
     double most = 0, inner = 0;
     for (int i = 0; i <= 400; ++i) {
       const double u = use(i * span.length / 400);
@@ -174,9 +176,9 @@ TEST(DividedMembers, PartsWeighAndTurnAsTheWhole) {
   const PartSolid whole = solid_of(scene.frame, part_named(scene.frame, "beam_x_0_0_0"));
   const auto [a, b] = divided(whole, 0.7);
   EXPECT_NEAR(a.mass + b.mass, whole.mass, 1e-12 * whole.mass);
-  EXPECT_NEAR(length((a.mass / whole.mass) * a.centre + (b.mass / whole.mass) * b.centre -
-                     whole.centre),
-              0, 1e-13);
+  EXPECT_NEAR(
+      length((a.mass / whole.mass) * a.centre + (b.mass / whole.mass) * b.centre - whole.centre), 0,
+      1e-13);
   const double da = dot(a.centre - whole.centre, whole.axes.z),
                db = dot(b.centre - whole.centre, whole.axes.z);
   EXPECT_NEAR(a.inertia.xx + b.inertia.xx + a.mass * da * da + b.mass * db * db, whole.inertia.xx,
@@ -197,7 +199,8 @@ TEST(DividedMembers, AJointMoreChangesNoOtherLoad) {
     loads.contacts = {{m, solid_of(frame, m).centre + Vec3{0, 0.1, 0}, {3e4, -5e4, 2e4}}};
     FrameSolver before(scene.frame);
     before.solve(loads);
-    const Six moved = before.motion_within(m, at, before.displacements(), FrameSolver::OnMember::all);
+    const Six moved =
+        before.motion_within(m, at, before.displacements(), FrameSolver::OnMember::all);
     MemberSpan span;
     ASSERT_TRUE(before.find_span(m, span));
     const MemberDivision division = divide_member(
@@ -319,8 +322,8 @@ TEST(DividedMembers, ABeamThatBendsStaysKinked) {
                  q = pose_at(r.recording, b.track, t, b.standing);
       const Vec3 gap = p * Vec3{0, 0, a.half_length} - q * Vec3{0, 0, -b.half_length};
       EXPECT_LT(length(gap), 0.05);
-      kink = std::max(kink, length(cross(rotate(p.rotation, {0, 0, 1}),
-                                         rotate(q.rotation, {0, 0, 1}))));
+      kink = std::max(kink,
+                      length(cross(rotate(p.rotation, {0, 0, 1}), rotate(q.rotation, {0, 0, 1}))));
     }
   }
   EXPECT_NEAR(kink, most, 0.1 * most) << "the halves turn against each other as the hinge did";
@@ -365,8 +368,8 @@ TEST(DividedMembers, BlowsLeaveTheBooksClosed) {
     const CollapseResult r = simulate_collapse(hit(seed));
     divided += r.members_divided;
     // Of what was turned over: contacts give and take many times what went in.
-    const double scale = std::max(
-        {r.energy_in, std::fabs(r.energy.potential), std::fabs(r.energy.contact)});
+    const double scale =
+        std::max({r.energy_in, std::fabs(r.energy.potential), std::fabs(r.energy.contact)});
     EXPECT_LT(std::fabs(r.energy.numerical), 1e-8 * scale) << "seed " << seed;
     EXPECT_LT(r.momentum_error, 1e-12) << "seed " << seed;
   }
