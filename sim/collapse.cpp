@@ -337,6 +337,7 @@ void CollapseRun::launch(std::uint32_t index) {
   body.pose.position = p.position + flown * p.velocity + (flown * flown / 2) * gravity;
   body.velocity = p.velocity + flown * gravity;
   shot.body = world_.add_sphere(body, p.radius);
+  motion_->add_projectile(shot.body, p.mass);
   shot.track = recorder_.add_track(kNoTrack);
   recorder_.add_pose(shot.track, body.pose);
   if (panels_) panels_->follow_shot(index, shot.body, shot.track);

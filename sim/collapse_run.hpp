@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "sim/collapse.hpp"
@@ -99,6 +100,7 @@ class CollapseRun {
   void crack_panels();
   void keep_most_utilised(std::vector<Failure>& failures, std::vector<Weak>& weak) const;
   void give_way(std::size_t broken_before, const std::vector<Weak>& weak);
+  std::map<std::uint32_t, Vec3> pressed_by(BodyId ball, Vec3& lost) const;
   double borne_share(std::uint32_t part, std::size_t broken_before,
                      const std::vector<Weak>& weak) const;
   std::uint32_t struck_part(const Contact& contact, BodyId ball) const;

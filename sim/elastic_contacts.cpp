@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What touches a building's parts, and how much of a blow its frame can take.
+#include <algorithm>
+
 #include "sim/elastic_motion.hpp"
 
 namespace sunder {
@@ -16,10 +18,14 @@ bool breaks_into_chunks(const Frame& frame, std::uint32_t part) {
 void ElasticMotion::note_contacts(double dt) {
   for (const Contact& contact : world_.contacts()) {
     const Vec3 on_a = contact.impulse * contact.normal + contact.tangential;
-    if (const std::uint32_t part = part_of(contact.a, contact.part_a); part != kNoPart)
+    if (const std::uint32_t part = part_of(contact.a, contact.part_a); part != kNoPart) {
       touch(contact, part, on_a);
-    if (const std::uint32_t part = part_of(contact.b, contact.part_b); part != kNoPart)
+      if (mass_of(contact.b) > 0) touches_.struck_by(part, contact.b);
+    }
+    if (const std::uint32_t part = part_of(contact.b, contact.part_b); part != kNoPart) {
       touch(contact, part, -1.0 * on_a);
+      if (mass_of(contact.a) > 0) touches_.struck_by(part, contact.a);
+    }
   }
   for (const RestingLoad& load : world_.resting())
     if (const std::uint32_t part = part_of(load.on, load.part); part != kNoPart)
@@ -84,32 +90,68 @@ void ElasticMotion::move_colliders() {
       bodies_.move_collider(part, displacement_of(part));
 }
 
-/// Of the place that is touched, along the force, beyond the speed of what struck it.
-double ElasticMotion::speed_ahead(std::uint32_t part) const {
+/// kg; 0: it is none.
+double ElasticMotion::mass_of(BodyId projectile) const {
+  const auto found = std::ranges::find(projectiles_, projectile, &std::pair<BodyId, double>::first);
+  return found == projectiles_.end() ? 0 : found->second;
+}
+
+/// Of the place that is touched, along the force, beyond the speed of what struck it. A projectile
+/// has that which it will have with all that it is owed, were this the share of its forces.
+double ElasticMotion::speed_ahead(std::uint32_t part, double share) const {
   const FrameTouch& touch = touches_[part];
-  const double fall = scene_.simulation.gravity * scene_.rules.load_time;
   const Vec3 along = (1 / length(touch.force)) * touch.force;
-  return dot(velocity_at(part, touch.point), along) - touch.approach - fall;
+  const double speed = standing_.speed_along(touches_.load_on(part));
+  if (touch.striker == kNoBody)
+    return speed - touch.approach - scene_.simulation.gravity * scene_.rules.load_time;
+  Vec3 owed;
+  for (const std::uint32_t other : touches_.active())
+    if (touches_[other].striker == touch.striker) owed = owed + touches_.owed(other, share);
+  const Vec3 moves = world_.velocity(touch.striker) + (1 / mass_of(touch.striker)) * owed;
+  return speed - dot(moves, along);
+}
+
+/// Where the frame would run ahead of what struck it, and all that the same projectile touches.
+std::vector<ElasticMotion::Blow> ElasticMotion::blows_ahead() const {
+  std::vector<Blow> blows;
+  std::vector<BodyId> strikers;
+  for (const std::uint32_t part : touches_.active()) {
+    if (!bodies_.stands(part)) continue;
+    blows.push_back({part, speed_ahead(part, 1)});
+    if (blows.back().ahead > 0) strikers.push_back(touches_[part].striker);
+  }
+  std::erase_if(blows, [&](const Blow& blow) {
+    const BodyId striker = touches_[blow.part].striker;
+    return blow.ahead <= 0 && (striker == kNoBody || std::ranges::count(strikers, striker) == 0);
+  });
+  return blows;
 }
 
 /// The world takes what stands for fixed, so that light parts would get more speed than what struck
-/// them had: a step in which they would is solved again with as much force as they can take.
+/// them has left: a step in which they would is solved again with so much force that they move on
+/// together. Speeds are linear in the share.
 void ElasticMotion::limit_blows() {
-  if (!standing_.can_step_again()) return;
-  std::vector<std::pair<std::uint32_t, double>> ahead;
-  for (const std::uint32_t part : touches_.active()) {
-    if (!bodies_.stands(part)) continue;
-    const double speed = speed_ahead(part);
-    if (speed > 0) ahead.emplace_back(part, speed);
+  if (!standing_.in_time()) return;
+  std::vector<Blow> blows = blows_ahead();
+  if (blows.empty()) return;
+  std::vector<FrameLoads::OnPart> others = standing_contacts();
+  std::erase_if(others, [&](const FrameLoads::OnPart& load) {
+    return std::ranges::count(blows, load.part, &Blow::part) > 0;
+  });
+  standing_.set_contacts(std::move(others));
+  standing_.solve_step();
+  for (Blow& blow : blows) {
+    const double alone = speed_ahead(blow.part, 0);
+    blow.share = blow.ahead <= 0 ? 1 : alone < 0 ? alone / (alone - blow.ahead) : 0;
   }
-  if (ahead.empty()) return;
-  standing_.swap_velocities();
-  for (auto& [part, speed] : ahead) {
-    const double before = speed_ahead(part);
-    speed = before < 0 ? before / (before - speed) : 0;
+  for (const Blow& blow : blows) {
+    double share = blow.share;
+    for (const Blow& other : blows)
+      if (const BodyId striker = touches_[blow.part].striker;
+          striker != kNoBody && touches_[other.part].striker == striker)
+        share = std::min(share, other.share);
+    touches_.limit(blow.part, share);
   }
-  standing_.swap_velocities();
-  for (const auto& [part, share] : ahead) touches_.limit(part, share);
   press();
   standing_.solve_step();
 }

@@ -47,11 +47,11 @@ void ElasticMotion::follow(double now, double dt, bool ends_step) {
   const SimulationParams& simulation = scene_.simulation;
   const std::vector<std::uint32_t> changed =
       touches_.end_step(since_step_, scene_.rules.load_time, simulation.max_error);
-  press();
   bool pressed = !scene_.scenario.ground_motion.times.empty();
   for (const std::uint32_t part : touches_.active())
     pressed |= !changed.empty() && bodies_.stands(part);
-  if (pressed) standing_.wake();
+  if (pressed) standing_.wake();  // as it stood before this step
+  press();
   inner_.follow(changed, touches_);
   if (standing_.rings()) {
     standing_.begin_step();

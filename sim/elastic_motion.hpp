@@ -36,6 +36,7 @@ class ElasticMotion final : public FrameMotion {
   bool redistributes() const override { return true; }
   bool settle_breaks() override;
   std::vector<std::uint32_t> unheld_joints() const override;
+  void add_projectile(BodyId body, double mass) override { projectiles_.push_back({body, mass}); }
   double borne(std::uint32_t part) const override { return touches_[part].borne; }
   Vec3 give_back(std::uint32_t part, double share) override;
   void rejoin(std::span<const std::uint32_t> joints) override;
@@ -93,7 +94,13 @@ class ElasticMotion final : public FrameMotion {
   // elastic_contacts.cpp: what touches the parts.
   void note_contacts(double dt);
   void touch(const Contact& contact, std::uint32_t part, Vec3 impulse);
-  double speed_ahead(std::uint32_t part) const;
+  double mass_of(BodyId projectile) const;
+  double speed_ahead(std::uint32_t part, double share) const;
+  struct Blow {
+    std::uint32_t part = 0;
+    double ahead = 0, share = 0;  ///< m/s; of the force, that can be borne
+  };
+  std::vector<Blow> blows_ahead() const;
   void limit_blows();
   std::vector<FrameLoads::OnPart> standing_contacts() const;
   void press();
@@ -120,6 +127,7 @@ class ElasticMotion final : public FrameMotion {
   PartLinks links_;
   BuildingBodies bodies_;
   FrameTouches touches_;
+  std::vector<std::pair<BodyId, double>> projectiles_;  ///< and masses, kg
   StandingFrame standing_;
   InnerForces inner_;
   std::vector<std::uint32_t> broken_;                ///< since breaks were settled

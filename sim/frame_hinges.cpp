@@ -173,6 +173,20 @@ double FrameSolver::Impl::work_of(const FrameLoads& loads) {
   return work;
 }
 
+double FrameSolver::Impl::power_of(const FrameLoads::OnPart& contact, std::span<const double> v) {
+  double power = 0;
+  for (auto [m, holding] : contacts_of({.gravity = {}, .contacts = {contact}}).members) {
+    if (members[m].role == Role::elastic && bent_of[m] != kNone) {
+      Bent free = bent[bent_of[m]];
+      free.rotation = free.moment = {};
+      const Twelve turned = plastic_motion(free, plastic_rotations(free, holding));
+      holding = difference(holding, end_forces(free.response, turned));
+    }
+    power -= product(holding, displacements_of(members[m], v));
+  }
+  return power;
+}
+
 void FrameSolver::set_hinges(std::span<const Hinge> hinges) {
   impl_->set_hinges(hinges);
 }
@@ -183,6 +197,10 @@ bool FrameSolver::can_bend(std::uint32_t joint) const {
 
 double FrameSolver::work_of(const FrameLoads& loads) const {
   return impl_->work_of(loads);
+}
+
+double FrameSolver::power_of(const FrameLoads::OnPart& contact, std::span<const double> v) const {
+  return impl_->power_of(contact, v);
 }
 
 std::vector<FrameSolver::Hinge> FrameSolver::hinges() const {

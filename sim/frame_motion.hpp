@@ -59,6 +59,8 @@ class FrameMotion {
   virtual bool settle_breaks() = 0;
   /// Joints that have to go too: what they hold has lost too many others to be in balance.
   virtual std::vector<std::uint32_t> unheld_joints() const = 0;
+  /// What can be given back what the frame does not take of its blow.
+  virtual void add_projectile(BodyId, double /*mass*/) {}
   /// Share of what struck the part in the last step that it could take up.
   virtual double borne(std::uint32_t) const { return 1; }
   /// Of what struck the part in the last step it bore but this share: its joints broke. Returns the

@@ -150,6 +150,8 @@ class FrameSolver {
   double strain_energy() const;
   /// Work of these loads on the displacements as they are, J.
   double work_of(const FrameLoads& loads) const;
+  /// Of a contact alone on velocities of the freedoms, W. Hinges turn freely.
+  double power_of(const FrameLoads::OnPart& contact, std::span<const double> v) const;
   /// What of a part's mass the model carries, kg, and mass × way (or velocity) of its places, kg m:
   /// as its weight is shared by the nodes, so that work_of(weight) is the sum by gravity.
   struct MassWay {

@@ -147,6 +147,7 @@ struct FrameSolver::Impl {
   void turn_hinges();
   double strain_of_hinges() const;
   double work_of(const FrameLoads& loads);
+  double power_of(const FrameLoads::OnPart& contact, std::span<const double> v);
 
   // frame_ways.cpp: how far masses move.
   struct LineWay {

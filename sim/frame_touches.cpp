@@ -39,7 +39,7 @@ std::vector<std::uint32_t> FrameTouches::end_step(double dt, double load_time, d
     touch.force = force;
     touch.borne = 1;
     touch.is_active = length(force) > kNoForce;
-    if (!touch.is_active) touch.approach = 0, touch.owed = {};
+    if (!touch.is_active) touch.approach = 0, touch.owed = {}, touch.striker = kNoBody;
     touch.impulse = touch.weighted = {};
     touch.size = 0;
   }
@@ -63,14 +63,13 @@ void FrameTouches::list_active() {
 void FrameTouches::limit(std::uint32_t part, double share) {
   FrameTouch& touch = of_[part];
   touch.force = share * touch.force;
-  touch.borne = share;
+  touch.borne *= share;
   touch.is_active = length(touch.force) > kNoForce;
   list_active();
 }
 
 Vec3 FrameTouches::end(std::uint32_t part) {
-  const FrameTouch& touch = of_[part];
-  const Vec3 back = touch.owed - (last_dt_ / 2) * (touch.before + touch.force);
+  const Vec3 back = owed(part, 1);
   forget(part);
   return back;
 }

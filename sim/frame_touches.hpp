@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/frame_solver.hpp"
+#include "sim/rigid_world.hpp"
 
 namespace sunder {
 
@@ -19,6 +20,7 @@ struct FrameTouch {
   Vec3 before;          ///< the force at the end of the step before
   Vec3 owed;            ///< impulse that was taken and is not yet passed on, before the last step
   double borne = 1;     ///< share of the blow that the frame could take
+  BodyId striker = kNoBody;  ///< a projectile
   bool is_active = false;
 };
 
@@ -29,6 +31,7 @@ class FrameTouches {
   explicit FrameTouches(std::uint32_t parts) : of_(parts), listed_(parts, 0) {}
 
   void add(std::uint32_t part, Vec3 point, Vec3 impulse, double approach);
+  void struck_by(std::uint32_t part, BodyId projectile) { of_[part].striker = projectile; }
   /// A step ends: forces. Parts whose force changed by more than `max_error` of itself, ascending.
   std::vector<std::uint32_t> end_step(double dt, double load_time, double max_error);
   const FrameTouch& operator[](std::uint32_t part) const { return of_[part]; }
@@ -38,6 +41,10 @@ class FrameTouches {
     return {part, of_[part].point, of_[part].force};
   }
 
+  /// Impulse that is not yet passed on were this the share of the force now, N s.
+  Vec3 owed(std::uint32_t part, double share) const {
+    return of_[part].owed - (last_dt_ / 2) * (of_[part].before + share * of_[part].force);
+  }
   /// Of what struck the part in the last step it took but this share.
   void limit(std::uint32_t part, double share);
   /// Nothing touches it any more. Returns the impulse that was not passed on.

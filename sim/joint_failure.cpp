@@ -2,7 +2,6 @@
 // Which joints fail: by their load, by the buckling or the lost bracing of a post, by a hit.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "sim/collapse_run.hpp"
 
@@ -108,27 +107,48 @@ void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& w
   for (std::size_t i = 0; i < shots_.size(); ++i) {
     Shot& shot = shots_[i];
     if (shot.body == kNoBody) continue;
-    std::set<std::uint32_t> struck;
-    for (const Contact& contact : world_.contacts())
-      if (contact.a == shot.body || contact.b == shot.body)
-        struck.insert(struck_part(contact, shot.body));
-    struck.erase(kNoPart);
+    Vec3 lost;
+    const std::map<std::uint32_t, Vec3> struck = pressed_by(shot.body, lost);
     const double mass = scene_.projectiles[i].mass;
     const Vec3 now = world_.velocity(shot.body);
-    const Vec3 lost = mass * (shot.velocity - now);
+    // What passes through it from something else is not its own.
+    const double own = mass * length(shot.velocity - now);
+    if (own < length(lost)) lost = (own / length(lost)) * lost;
     shot.given = struck.empty() ? Vec3{} : shot.given + lost;
-    Vec3 back;
-    for (const std::uint32_t part : struck) {
+    Vec3 back, across;
+    for (const auto& [part, pressed] : struck) {
       const double share = borne_share(part, broken_before, weak);
-      if (share < 1 || motion_->borne(part) < 1) back = back + motion_->give_back(part, share);
+      if (share == 1 && motion_->borne(part) == 1) continue;
+      const Vec3 more = motion_->give_back(part, share);
+      back = back + more;
+      if (const double squared = dot(pressed, pressed); squared > 0)
+        across = across + (dot(more, pressed) / squared) * pressed;
     }
     if (back == Vec3{}) continue;
-    back = std::min(1.0, length(shot.given) / length(back)) * back;
+    const double kept = std::min(1.0, length(shot.given) / length(back));
+    back = kept * back;
     shot.given = shot.given - back;
-    const double before = world_.kinetic_energy();
+    const Vec3 mean = now + (0.5 / mass) * back;
     world_.set_velocity(shot.body, now + (1 / mass) * back, world_.angular_velocity(shot.body));
-    result_.energy.contact -= world_.kinetic_energy() - before;
+    result_.energy.contact -= kept * dot(across, mean);
+    result_.energy.friction -= dot(back - kept * across, mean);
   }
+}
+
+/// Standing parts that a ball touches, and the impulse across their surface on each; in `lost` with
+/// friction, on all of them, N s.
+std::map<std::uint32_t, Vec3> CollapseRun::pressed_by(BodyId ball, Vec3& lost) const {
+  std::map<std::uint32_t, Vec3> struck;
+  for (const Contact& contact : world_.contacts()) {
+    if (contact.a != ball && contact.b != ball) continue;
+    const std::uint32_t part = struck_part(contact, ball);
+    if (part == kNoPart || !motion_->stands(part)) continue;
+    const double side = contact.a == ball ? -1 : 1;
+    Vec3& pressed = struck[part];
+    pressed = pressed + side * contact.impulse * contact.normal;
+    lost = lost + side * (contact.impulse * contact.normal + contact.tangential);
+  }
+  return struck;
 }
 
 /// By the utilisation at which its joints, or it itself, broke in this step; 1: none did.

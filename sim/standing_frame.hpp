@@ -49,10 +49,11 @@ class StandingFrame {
   void solve_step();
   void end_step();
   /// The last step can be done again with other contacts, from where it began.
-  bool can_step_again() const { return can_step_again_; }
+  bool can_step_again() const { return can_step_again_ && in_time(); }
   void step_again();
-  /// In a step: velocities when it began take the place of those now, and back.
-  void swap_velocities() { std::swap(v_, v_before_); }
+  /// Speed of the place that a contact touches, along its force; in time. What the force does on
+  /// the frame is its work on that.
+  double speed_along(FrameLoads::OnPart contact) const;
   void follow_step();  ///< after a step; a hinge that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 

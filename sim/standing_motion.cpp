@@ -38,7 +38,7 @@ void StandingFrame::wake() {
 /// The momentum M v and the elastic forces K u at the beginning, and what the loads do until then.
 void StandingFrame::begin_step() {
   if (!in_time()) return;
-  can_step_again_ = hinges_.empty() && !contacts_.empty();
+  can_step_again_ = !contacts_.empty();
   if (!hinges_.empty() || (can_step_again_ && !scene_.projectiles.empty()))
     before_step_ = {u_, v_, f_, laid_, pushed_, shaken_, losses_, given_};
   find_momentum();
@@ -84,10 +84,18 @@ void StandingFrame::go_back() {
   dynamic_.frame->set_displacements(u_, laid_);
 }
 
+/// Hinges that turned stiff in it stay so.
 void StandingFrame::step_again() {
   go_back();
+  hinges_ = in_use().hinges();
   begin_step();
   end_step();
+  follow_step();
+}
+
+double StandingFrame::speed_along(FrameLoads::OnPart contact) const {
+  contact.part = known_part(contact.part);
+  return dynamic_.frame->power_of(contact, v_) / length(contact.force);
 }
 
 /// To u_. Contacts and the ground's own motion give the frame the mean of their forces at both ends

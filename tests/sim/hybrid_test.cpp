@@ -474,6 +474,44 @@ TEST(Hybrid, FactorMadeAheadGivesTheSameBits) {
   EXPECT_EQ(at_need.motion->strain(), ahead.motion->strain());
 }
 
+// A cantilever with the shape functions N of a beam's free end is as heavy at ξ as 1/(Nᵀ M⁻¹ N), so
+// that m/(m + that) is left of the energy while it has no time to bend back.
+TEST(Hybrid, LightBeamsMoveOnWithWhatStrikesThem) {
+  constexpr double kLength = 20, kAt = 0.8;
+  CollapseScene scene;
+  Frame& frame = scene.frame;
+  frame = empty_frame();
+  frame.nodes = {{"wall", {0, 4, 0}, true}, {"tip", {kLength, 4, 0}, false}};
+  frame.members = {{.name = "beam", .from = 0, .to = 1}};
+  join(frame);
+  const double shift = kAt * kAt * (3 - 2 * kAt), turn = kAt * kAt * (kAt - 1);
+  const double beam = frame.steels[0].density * frame.sections[0].area * kLength;
+  const double light = beam / 3 / (4 * shift * shift + 44 * shift * turn + 156 * turn * turn);
+  scene.rules.breaking = false;
+  scene.rules.load_time = 1e-6;
+  SimulationParams& simulation = scene.simulation;
+  simulation.solver = "hybrid";
+  simulation.ground = false;
+  simulation.gravity = 0;
+  simulation.damping_mass = simulation.damping_stiffness = 0;
+  simulation.step = simulation.history_step = 1e-3;
+  simulation.duration = 0.005;
+  for (const double ratio : {0.3, 1.0, 10.0}) {
+    Projectile ball;
+    ball.radius = 0.2;
+    ball.mass = ratio * light;
+    ball.position = {kAt * kLength, 4.3651, 0};
+    ball.velocity = {0, -10, 0};
+    scene.projectiles = {ball};
+    const CollapseResult r = simulate_collapse(scene);
+    const auto is_struck = [](const RunSample& s) { return s.contact != 0; };
+    const auto struck = std::ranges::find_if(r.recording.series, is_struck);
+    ASSERT_NE(struck, r.recording.series.end());
+    const double left = ratio / (ratio + 1);
+    EXPECT_NEAR(struck->kinetic / r.energy_in, left, 0.02 * left) << ratio;
+  }
+}
+
 TEST(Hybrid, WhatRingsIsFactoredOnlyWhereItRings) {
   CollapseScene scene = hybrid_scene(2, 2, 2);
   scene.simulation.duration = 0.1;
