@@ -18,15 +18,6 @@ void add_item(std::string& list, std::initializer_list<std::string_view> texts) 
   for (const std::string_view text : texts) list += text;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result;
-  StringSink sink(result);
-  TextWriter out(sink);
-  out.quoted(text);
-  out.flush();
-  return result;
-}
-
 // JSON lists of a document that grows chunk by chunk, and its binary.
 struct PlainGlb {
   std::string nodes, roots, meshes, accessors, views, binary;
@@ -62,7 +53,7 @@ void add_chunk(const ImportedChunk& chunk, PlainGlb& glb) {
                           side == 0 ? "0" : "1", "}"});
   }
   const std::string number = std::to_string(glb.mesh_count++);
-  add_item(glb.nodes, {R"({"name":)", quoted(chunk.name), R"(,"mesh":)", number, "}"});
+  add_item(glb.nodes, {R"({"name":)", json_quoted(chunk.name), R"(,"mesh":)", number, "}"});
   add_item(glb.roots, {number});
   add_item(glb.meshes, {R"({"primitives":[)", primitives, "]}"});
 }

@@ -45,15 +45,6 @@ std::string without_tags(std::string_view json) {
   return result;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result;
-  StringSink sink(result);
-  TextWriter out(sink);
-  out.quoted(text);
-  out.flush();
-  return result;
-}
-
 // From `start` on the first bytes of all words of four, then the second, third and fourth ones,
 // then what is left of the last word: floats that are alike pack better so.
 std::string in_planes(const std::string& bytes, std::size_t start) {
@@ -117,7 +108,7 @@ std::string page_text(std::span<const PageModel> models, std::string_view page) 
   std::size_t number = 0;
   for (const PageModel& model : models) {
     list += list.size() > 1 ? ",{\"name\":" : "{\"name\":";
-    list += without_tags(quoted(model.name)) + ",\"files\":[";
+    list += without_tags(json_quoted(model.name)) + ",\"files\":[";
     add_file(model.file, words_of(model.file), model.name, number++, elements, list);
     if (!model.companion.empty()) {
       list += ',';

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "io/text_writer.hpp"
 
@@ -24,5 +25,15 @@ class StringSink : public ByteSink {
  private:
   std::string& text_;
 };
+
+/// A text as JSON has it, with its quotation marks.
+inline std::string json_quoted(std::string_view text) {
+  std::string result;
+  StringSink sink(result);
+  TextWriter out(sink);
+  out.quoted(text);
+  out.flush();
+  return result;
+}
 
 }  // namespace sunder

@@ -26,16 +26,6 @@ void add_to(Twelve& v, std::size_t first, Vec3 value) {
   v[first + 2] += value.z;
 }
 
-/// J += m (r² 1 − r rᵀ).
-void add_moment(SymMat3& inertia, double mass, Vec3 r) {
-  inertia.xx += mass * (r.y * r.y + r.z * r.z);
-  inertia.yy += mass * (r.x * r.x + r.z * r.z);
-  inertia.zz += mass * (r.x * r.x + r.y * r.y);
-  inertia.xy -= mass * r.x * r.y;
-  inertia.xz -= mass * r.x * r.z;
-  inertia.yz -= mass * r.y * r.z;
-}
-
 /// J += p x xᵀ.
 void add_polar(SymMat3& inertia, double polar, Vec3 x) {
   inertia.xx += polar * x.x * x.x;
@@ -47,6 +37,15 @@ void add_polar(SymMat3& inertia, double polar, Vec3 x) {
 }
 
 }  // namespace
+
+void add_moment(SymMat3& inertia, double mass, Vec3 r) {
+  inertia.xx += mass * (r.y * r.y + r.z * r.z);
+  inertia.yy += mass * (r.x * r.x + r.z * r.z);
+  inertia.zz += mass * (r.x * r.x + r.y * r.y);
+  inertia.xy -= mass * r.x * r.y;
+  inertia.xz -= mass * r.x * r.z;
+  inertia.yz -= mass * r.y * r.z;
+}
 
 std::uint32_t FrameSolver::Impl::piece_of(const Member& member) const {
   if (member.role == Role::hanging) {

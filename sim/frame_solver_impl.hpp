@@ -16,6 +16,9 @@
 
 namespace sunder {
 
+/// J += m (r² 1 − r rᵀ).
+void add_moment(SymMat3& inertia, double mass, Vec3 r);
+
 /// Acceleration that loads the masses of a piece (gravity less its own), linear in space.
 struct MassField {
   Vec3 origin, value;       ///< m; m/s² at the origin

@@ -11,16 +11,6 @@ namespace {
 
 const double kGauss = std::sqrt(0.6);  // outer points of Gauss's rule of three, weight 5/9
 
-/// J += m (r² 1 − r rᵀ).
-void add_moment(SymMat3& inertia, double mass, Vec3 r) {
-  inertia.xx += mass * (r.y * r.y + r.z * r.z);
-  inertia.yy += mass * (r.x * r.x + r.z * r.z);
-  inertia.zz += mass * (r.x * r.x + r.y * r.y);
-  inertia.xy -= mass * r.x * r.y;
-  inertia.xz -= mass * r.x * r.z;
-  inertia.yz -= mass * r.y * r.z;
-}
-
 Vec3 minus_product(const std::array<Twelve, 3>& held_nodes, const Twelve& motion) {
   std::array<double, 3> sum{};
   for (std::size_t axis = 0; axis < 3; ++axis)
