@@ -175,6 +175,20 @@ AccuracyRows tower(const Engine& engine, const Fineness& fineness) {
   return {lean, speed, top};
 }
 
+AccuracyRows heavy_on_light(const Engine& engine, double ratio, const Fineness& fineness) {
+  const auto world = world_of(engine, fineness, {});
+  for (const int i : {0, 1})
+    world->add({.mass = i == 0 ? 1.0 : ratio, .half = {0.5, 0.5, 0.5}, .centre = {0, 0.5 + i, 0}});
+  for (int i = 0; i < steps_in(5, fineness.step); ++i) world->step(fineness.step);
+  char name[80];
+  std::snprintf(name, sizeof name, "cube of %g kg on a cube of 1 kg, 5 s", ratio);
+  AccuracyRow top = row_of(name, fineness), aside = top;
+  top.quantity = "top, m", top.measured = world->centre(1).y, top.expected = 1.5;
+  const Vec3 below = world->centre(0);
+  aside.quantity = "lower cube aside, m", aside.measured = std::hypot(below.x, below.z);
+  return {top, aside};
+}
+
 AccuracyRows plain_motion(const Engine& engine, const Fineness& fineness) {
   AccuracyRows rows;
   const auto add = [&](const char* name, const char* quantity, double measured, double expected) {

@@ -33,6 +33,8 @@ struct Fineness {
 AccuracyRows head_on(const Engine& engine, double speed, const Fineness& fineness);
 AccuracyRows free_spin(const Engine& engine, const Fineness& fineness);
 AccuracyRows tower(const Engine& engine, const Fineness& fineness);
+/// Two cubes at rest, the upper one `ratio` times as heavy.
+AccuracyRows heavy_on_light(const Engine& engine, double ratio, const Fineness& fineness);
 /// Fall, bounces, blocks and a ball on slopes.
 AccuracyRows plain_motion(const Engine& engine, const Fineness& fineness);
 AccuracyRows rocking(const Engine& engine, const Fineness& fineness);   ///< Housner 1963

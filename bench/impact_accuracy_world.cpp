@@ -71,6 +71,13 @@ void measure_rigid_world() {
       for (const int iterations : {10, 20, 50}) print_rows(tower(ours, {dt, iterations}));
   }
   {
+    const Block block("impact_accuracy heavy");
+    print_accuracy_header();
+    for (const double ratio : {100.0, 300.0, 1000.0})
+      for (const int iterations : {20, 50, 80})
+        print_rows(heavy_on_light(ours, ratio, {.iterations = iterations}));
+  }
+  {
     const Block block("impact_accuracy motion");
     print_accuracy_header();
     print_worst([&](const Fineness& fineness) { return plain_motion(ours, fineness); });
