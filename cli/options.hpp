@@ -24,7 +24,8 @@ struct Options {
   std::filesystem::path history;               ///< --history; empty: none
   std::optional<double> at;                    ///< --at, s
   std::optional<int> picture_width;            ///< --width, pixels
-  std::vector<std::string> overrides;          ///< --set
+  std::vector<std::string> overrides;          ///< --set, then --max-error
+  bool asks_error = false;                     ///< --max-error is given
   std::optional<std::uint64_t> seed;
   int threads = 0;  ///< 0: as many as the machine has
   bool json = false, quiet = false, allow_outside = false;

@@ -439,8 +439,8 @@ void read_numbers(Options& options, const Given& given) {
   if (!given.threads.empty())
     options.threads = static_cast<int>(parse_whole("--threads", given.threads, 1024));
   if (!given.at.empty()) options.at = parse_seconds("--at", given.at);
-  if (!given.max_error.empty())
-    options.overrides.push_back("simulation.max_error=" + given.max_error);
+  options.asks_error = !given.max_error.empty();
+  if (options.asks_error) options.overrides.push_back("simulation.max_error=" + given.max_error);
   if (given.width.empty()) return;
   options.picture_width =
       static_cast<int>(parse_whole("--width", given.width, kMostPictureWidth, kLeastPictureWidth));

@@ -2,6 +2,7 @@
 #include "cli/read_scene.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <thread>
 
 #include "cli/scene_text.hpp"
@@ -19,7 +20,12 @@ Scene read_scene(const Options& options) {
     if (options.seed) scene.seed = *options.seed;
     return scene;
   } catch (const Error& error) {
-    throw named_by_option(error, is_file ? options.inputs.front().string() : kCommandLine);
+    const Error named =
+        named_by_option(error, is_file ? options.inputs.front().string() : kCommandLine);
+    constexpr std::string_view kSet = "--set: /simulation/max_error: ";
+    const std::string message = named.what();
+    if (!options.asks_error || !message.starts_with(kSet)) throw named;
+    throw Error(named.code(), "--max-error: " + message.substr(kSet.size()));
   }
 }
 

@@ -145,7 +145,7 @@ bool cut_rough(SolidAsset& asset, const SolidWarp& warp, std::uint64_t seed, int
       partition_solid(fine.mesh, fine.parents, cutter.complex, cut, threads, asset.stats);
   merge_outer_triangles(asset.surface.mesh, asset.partition);
   asset.chunks = solid_masses(asset.partition, threads);
-  return all_face_outwards(asset.chunks) && !has_crossings(asset.partition);
+  return all_face_outwards(asset.chunks) && !has_crossings(asset.partition, asset.origin);
 }
 
 // The size of a typical chunk.
@@ -201,6 +201,15 @@ void verify(const SolidAsset& asset) {
   }
 }
 
+void move_to_origin(SolidAsset& asset) {
+  const Vec3 origin = asset.origin;
+  if (origin == Vec3{}) return;
+  for (Vec3& v : asset.surface.mesh.vertices) v = v - origin;
+  for (Vec3& v : asset.partition.vertices) v = v - origin;
+  for (MassProperties& chunk : asset.chunks) chunk.centroid = chunk.centroid - origin;
+  asset.solid.position = asset.solid.position + rotate(asset.solid.rotation, origin);
+}
+
 }  // namespace
 
 std::string SolidAsset::chunk_name(std::uint32_t chunk) const {
@@ -225,6 +234,7 @@ SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double 
   asset.surface = std::move(surface);
   const TriMesh& mesh = asset.surface.mesh;
   asset.volume_expected = mass_properties(mesh).volume;
+  asset.origin = origin_for(mesh);
   if (!(asset.volume_expected > 0))
     throw Error(ErrorCode::geometry, "solid " + solid.name + ": the surface faces inwards");
   const auto tell = [&](double share) {
@@ -234,6 +244,7 @@ SolidAsset fracture_solid(const SolidModel& solid, ModelSurface surface, double 
   cut_asset(asset, solid_seed(params.seed, solid.name), params.threads);
   tell(0.9);
   verify(asset);
+  move_to_origin(asset);
   asset.bonds = solid_bonds(asset.partition);
   tell(1);
   return asset;

@@ -56,6 +56,10 @@ struct SolidAsset {
   SolidModel solid;
   double density = 2400;  ///< kg/m³
   ModelSurface surface;   ///< sound, in metres, local frame
+  /// Origin of the local frame, in the model's own coordinates, m. A model several times as far from
+  /// its origin as it is large would lose in float32 what a file is good for: its local frame is
+  /// in its middle, and `solid.position` has moved along. 0 for others.
+  Vec3 origin;
   SolidPartition partition;
   std::vector<MassProperties> chunks;  ///< at density 1, local frame
   std::vector<Bond> bonds;             ///< by (a, b); area of all common faces

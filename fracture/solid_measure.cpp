@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,7 @@ TriMesh chunk_triangles(const SolidPartition& partition, std::uint32_t chunk) {
 }
 
 // A chunk as a file holds it: float32 positions. `local` is all kNone before and after.
-TriMesh chunk_in_file(const SolidPartition& partition, std::uint32_t chunk,
+TriMesh chunk_in_file(const SolidPartition& partition, std::uint32_t chunk, Vec3 origin,
                       std::vector<std::uint32_t>& local) {
   TriMesh mesh;
   const auto in_file = [](double x) { return static_cast<double>(static_cast<float>(x)); };
@@ -36,7 +37,7 @@ TriMesh chunk_in_file(const SolidPartition& partition, std::uint32_t chunk,
       std::uint32_t& v = local[t.corners[k]];
       if (v == kNone) {
         v = static_cast<std::uint32_t>(mesh.vertices.size());
-        const Vec3 p = partition.vertices[t.corners[k]];
+        const Vec3 p = partition.vertices[t.corners[k]] - origin;
         mesh.vertices.push_back({in_file(p.x), in_file(p.y), in_file(p.z)});
       }
       triangle[k] = v;
@@ -56,10 +57,25 @@ struct Sum {
 
 }  // namespace
 
-bool has_crossings(const SolidPartition& partition) {
+Vec3 origin_for(const TriMesh& surface) {
+  constexpr double kFar = 4;  // as the origin's distance is to half the size: two bits lost
+  Vec3 low = surface.vertices.front(), high = low;
+  for (const Vec3 v : surface.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  const Vec3 half = 0.5 * (high - low), middle = 0.5 * (high + low);
+  const double size = std::max({half.x, half.y, half.z});
+  const double away = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
+  if (!(away > kFar * size)) return {};
+  const auto in_file = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  return {in_file(middle.x), in_file(middle.y), in_file(middle.z)};
+}
+
+bool has_crossings(const SolidPartition& partition, Vec3 origin) {
   std::vector<std::uint32_t> local(partition.vertices.size(), kNone);
   for (std::uint32_t c = 0; c < partition.chunk_count(); ++c)
-    if (is_tangled(chunk_in_file(partition, c, local))) return true;
+    if (is_tangled(chunk_in_file(partition, c, origin, local))) return true;
   return false;
 }
 

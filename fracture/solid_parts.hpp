@@ -18,8 +18,13 @@ SolidPartition partition_solid(const TriMesh& mesh, std::span<const std::uint32_
 /// corners between them. Chunks stay as they are but for that.
 void merge_outer_triangles(const TriMesh& surface, SolidPartition& partition);
 
-/// Whether a chunk crosses itself as a file holds it, with float32 positions: see is_tangled.
-bool has_crossings(const SolidPartition& partition);
+/// Where the local frame of a surface is to be (SolidAsset::origin), a place of float32
+/// coordinates: those of a model that has such stay exact.
+Vec3 origin_for(const TriMesh& surface);
+
+/// Whether a chunk crosses itself as a file holds it, with float32 positions from `origin`: see
+/// is_tangled.
+bool has_crossings(const SolidPartition& partition, Vec3 origin = {});
 
 /// Mass properties of every chunk at density 1, and bonds of all pairs that share faces.
 std::vector<MassProperties> solid_masses(const SolidPartition& partition, int threads);

@@ -40,6 +40,8 @@ SolidWarp::SolidWarp(const SolidModel& solid, double chunk, double share, std::u
       amplitude_ = std::min(amplitude_, left / kWaveSlope * wavelength_);
     }
   }
+  for (std::uint64_t axis = 0; axis < 3; ++axis)
+    for (std::uint64_t k = 0; k < 2; ++k) phases_[2 * axis + k] = random_unit(seed_, axis, k + 1);
   roughness_ = share * std::min(roughness_, left / kNoiseSlope * size_);
   amplitude_ *= share;
 }
@@ -76,14 +78,13 @@ Vec3 SolidWarp::displacement(Vec3 place) const {
   Vec3 sum;
   if (roughness_ > 0) sum = roughness_ * noise(place);
   if (amplitude_ > 0) {
-    const auto wave = [&](double a, double b, std::uint64_t axis) {
-      const double p = random_unit(seed_, axis, 1), q = random_unit(seed_, axis, 2);
-      return amplitude_ / 2 *
-             (unit_at_turns(a / wavelength_ + p).y + unit_at_turns(b / wavelength_ + q).y);
-    };
-    sum = sum + Vec3{waves_.x > 0 ? wave(place.y, place.z, 0) : 0,
-                     waves_.y > 0 ? wave(place.z, place.x, 1) : 0,
-                     waves_.z > 0 ? wave(place.x, place.y, 2) : 0};
+    const double x = place.x / wavelength_, y = place.y / wavelength_, z = place.z / wavelength_;
+    std::array<double, kSines> w{y + phases_[0], z + phases_[1], z + phases_[2],
+                                 x + phases_[3], x + phases_[4], y + phases_[5]};
+    sines_at_turns(w);
+    const auto wave = [&](double a, double b) { return amplitude_ / 2 * (a + b); };
+    sum = sum + Vec3{waves_.x > 0 ? wave(w[0], w[1]) : 0, waves_.y > 0 ? wave(w[2], w[3]) : 0,
+                     waves_.z > 0 ? wave(w[4], w[5]) : 0};
   }
   return sum;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,6 +31,7 @@ class SolidWarp {
   Vec3 noise(Vec3 place) const;
   double roughness_ = 0, size_ = 1, amplitude_ = 0, wavelength_ = 1;
   Vec3 waves_;  ///< 1 for axes with slices
+  std::array<double, 6> phases_{};  ///< of their waves, two for each axis, turns
   std::uint64_t seed_;
 };
 

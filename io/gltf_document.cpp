@@ -184,6 +184,10 @@ void Document::write_wall_extras(std::size_t w) {
   const WallView& wall = walls_[w];
   if (wall.is_solid) {
     out_.text(R"(,"extras":{"sunder":{"sunder":1,"kind":"solid")");
+    if (wall.origin != Vec3{}) {
+      out_.text(R"(,"origin":)");
+      out_.numbers({wall.origin.x, wall.origin.y, wall.origin.z});
+    }
   } else {
     out_.key(R"(,"extras":{"sunder":{"sunder":1,"thickness":)", wall.thickness);
   }

@@ -55,6 +55,7 @@ WallView view_of(const SolidAsset& asset, const SolidMeshes& meshes, const fs::p
                 .position = asset.solid.position,
                 .rotation = asset.solid.rotation,
                 .is_solid = true,
+                .origin = asset.origin,
                 .density = asset.density,
                 .volume_expected = asset.volume_expected,
                 .positions = meshes.positions,

@@ -44,6 +44,7 @@ struct WallView {
   Vec3 position;
   Quaternion rotation;
   bool is_solid = false;
+  Vec3 origin = {};      ///< of a solid: SolidAsset::origin
   double thickness = 0;  ///< of a wall
   double density = 0, volume_expected = 0;
   std::span<const float> positions = {}, normals = {}, uvs = {};

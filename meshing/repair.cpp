@@ -46,6 +46,7 @@ void clean(Draft& draft, const Box3& box, double max_error) {
   take_out_flat_faces(draft);
   turn_flipped_faces(draft);
   fill_holes(draft);
+  drop_empty_shells(draft, weld_distance(box, max_error));
   split_vertices(draft, std::min(kApartShare * diagonal(box), max_error / 2));
   turn_shells(draft);
   drop_unused_vertices(draft);

@@ -345,6 +345,34 @@ void turn_shells(Draft& draft) {
                         " turned over (one inside another bounds a cavity)");
 }
 
+void drop_empty_shells(Draft& draft, double thickness) {
+  const TriMesh& mesh = draft.mesh();
+  const auto uses = all_uses(mesh);
+  const auto shell = orient(mesh.triangles, uses).shell;
+  std::vector<bool> open(shell.size());
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    if (edge.size() == 1) open[shell[edge[0].triangle]] = true;
+  });
+  std::vector<double> volume(shell.size()), area(shell.size());
+  for (std::size_t t = 0; t < shell.size(); ++t) {
+    const Vec3 base = mesh.vertices[mesh.triangles[shell[t]][0]];
+    const auto place = [&](std::size_t k) { return mesh.vertices[mesh.triangles[t][k]] - base; };
+    const Vec3 normal = cross(place(1) - place(0), place(2) - place(0));
+    volume[shell[t]] += dot(place(0), normal) / 6;
+    area[shell[t]] += length(normal) / 2;
+  }
+  std::vector<bool> keep;
+  std::uint64_t count = 0;
+  for (std::uint32_t t = 0; t < shell.size(); ++t) {
+    const std::uint32_t s = shell[t];
+    keep.push_back(open[s] || std::abs(volume[s]) > thickness / 2 * area[s]);
+    count += !keep[t] && shell[t] == t;
+  }
+  if (count == 0 || std::ranges::none_of(keep, [](bool kept) { return kept; })) return;
+  keep_triangles(draft, keep);
+  draft.steps.push_back(counted(count, "shell", "shells") + " enclosing nothing dropped");
+}
+
 void drop_unused_vertices(Draft& draft) {
   TriMesh& mesh = draft.mesh();
   std::vector<std::uint32_t> to(mesh.vertices.size(), kNone);

@@ -44,6 +44,9 @@ inline constexpr std::size_t kMostHoleEdges = 300;
 void split_vertices(Draft& draft, double apart);
 /// Turns whole shells over that are inside out.
 void turn_shells(Draft& draft);
+/// Drops closed shells that are no thicker than `thickness` (m), unless all are: what is left of a few
+/// faces, closed by faces over them.
+void drop_empty_shells(Draft& draft, double thickness);
 void drop_unused_vertices(Draft& draft);
 /// Cuts faces that cross or meet others wrongly out, with up to three rings about them, and fills
 /// the holes; true if the surface is a solid's by that and the new faces are within max_error (m)

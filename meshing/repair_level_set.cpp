@@ -14,6 +14,8 @@ namespace {
 
 // More shells than this are not each asked whether they lie in another.
 constexpr std::size_t kMostShellsAsked = 100;
+// Shells and bubbles of less than this share of a voxel are noise: there the lattice says nothing.
+constexpr double kSpeck = 0.1;
 
 // The mesh with fans, and per triangle the shell it belongs to.
 std::pair<TriMesh, std::vector<std::uint32_t>> with_fans(const TriMesh& mesh,
@@ -75,6 +77,27 @@ std::array<double, 3> plane_weights(const TriMesh& mesh, std::uint32_t triangle,
   return {1 - v - w, v, w};
 }
 
+// The surface without shells that enclose less than `least`, either way round; the largest stays.
+TriMesh without_specks(const TriMesh& mesh, double least) {
+  const auto uses = edge_uses(mesh.triangles, std::vector<bool>(mesh.triangles.size(), true));
+  const auto shell = orient(mesh.triangles, uses).shell;
+  std::vector<double> volume(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 base = mesh.vertices[mesh.triangles[shell[t]][0]];
+    const auto place = [&](std::size_t k) { return mesh.vertices[mesh.triangles[t][k]] - base; };
+    volume[shell[t]] += dot(place(0), cross(place(1), place(2))) / 6;
+  }
+  double most = 0;
+  for (const double v : volume) most = std::max(most, std::abs(v));
+  std::vector<bool> keep;
+  for (const std::uint32_t s : shell) keep.push_back(std::abs(volume[s]) >= std::min(least, most));
+  if (std::ranges::all_of(keep, [](bool kept) { return kept; })) return mesh;
+  Draft draft = make_draft(flat_surface(mesh));
+  keep_triangles(draft, keep);
+  drop_unused_vertices(draft);
+  return draft.mesh();
+}
+
 }  // namespace
 
 TriMesh closed_by_fans(const TriMesh& mesh) {
@@ -100,11 +123,12 @@ TriMesh closed_by_fans(const TriMesh& mesh) {
 }
 
 TriMesh solid_surface(const LevelSet& set) {
-  TriMesh mesh = smooth_surface(set);
+  const double speck = kSpeck * set.voxel * set.voxel * set.voxel;
+  TriMesh mesh = without_specks(smooth_surface(set), speck);
   if (diagnose(mesh, 1).is_solid()) return mesh;
   Draft draft = make_draft(flat_surface(mesh));
   if (cut_out_crossings(draft, TriangleTree(mesh), set.voxel / 2)) return draft.mesh();
-  return sound_surface(set);
+  return without_specks(sound_surface(set), speck);
 }
 
 void carry_over(const ModelSurface& given, const TriangleTree& tree, ModelSurface& made,

@@ -12,7 +12,7 @@ inline constexpr double kErrorShare = 1.0 / 200;
 inline constexpr double kVoxelShare = 0.8;
 
 /// A sound surface where the level set is 0: the smooth one, mended where it meets itself in a few
-/// places, or the one by tetrahedra.
+/// places, or the one by tetrahedra. Without shells and bubbles of less than a tenth of a voxel.
 TriMesh solid_surface(const LevelSet& set);
 
 }  // namespace sunder

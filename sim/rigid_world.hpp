@@ -123,7 +123,9 @@ struct StepWork {
 ///    exact parabola, rotation conserves angular momentum and, to fourth order, energy;
 ///  - restitution is a pass of its own after the solve, on the speed at the moment of impact, so
 ///    that it neither depends on the step nor disturbs stacks;
-///  - overlap is pushed out at 1 m/s at most, without touching a velocity;
+///  - overlap is pushed out at 1 m/s at most, without touching a velocity, and without lifting
+///    bodies (that have no joints) by more energy than contacts took from them; only what is put
+///    into something is lifted out of it all the same;
 ///  - friction is one vector in Coulomb's cone, against the sliding;
 ///  - contacts are found and solved in an order of our own keys;
 ///  - no function of the C library whose bits depend on the processor;
@@ -161,6 +163,12 @@ class RigidWorld {
   /// For so long the body meets spheres and the ground only: what leaves a hole at speed crushes
   /// the edges that would jam rigid ones.
   void exempt(BodyId body, double seconds);
+
+  /// Takes up to `energy` (J) from what bodies that are awake move against each other, as if they
+  /// stuck together for a moment; momentum and angular momentum stay. Returns the energy taken.
+  double slow_together(std::span<const BodyId> bodies, double energy);
+  /// Energy (J) that its contacts took is something else's, cracks': it lifts nothing any more.
+  void spend(BodyId body, double energy);
 
   /// Joined bodies do not collide with each other, nor those that are two joints apart.
   JointId add_joint(const JointParams& params);

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/common_motion.hpp"
 #include "sim/impulse_solver.hpp"
 #include "sim/principal_axes.hpp"
 #include "sim/resting.hpp"
@@ -206,7 +207,8 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::uint32_t find_root(std::uint32_t slot);
   void solve_island(std::span<const Link> links, std::span<RigidJoint* const> joints,
                     btContactSolverInfo& info);
-  void keep_energy(std::span<const Link> links);
+  double keep_energy(std::span<const Link> links);
+  void bound_pushes(std::span<const Link> links, double taken);
   void account();
   void account(const Link& link, const Meeting& meeting);
   void account(const RigidJoint& joint);
@@ -217,6 +219,7 @@ class World final : private WorldParts, public btDiscreteDynamicsWorld {
   std::vector<Body*> in_contact_;        ///< by slot; [0] is null
   std::vector<std::uint32_t> root_;      ///< of the islands' union-find, by slot
   std::vector<btCollisionObject*> solved_bodies_;
+  std::vector<Body*> pushed_;  ///< the same
   std::vector<btPersistentManifold*> solved_manifolds_;
   std::vector<RigidJoint*> awake_joints_;  ///< of bodies that are awake; by island, then age
   std::vector<btTypedConstraint*> solved_joints_;
@@ -481,6 +484,7 @@ void World::wake_around(Body& body) {
 /// What little it moved is lost to its support. The solver takes bodies without mass for fixed.
 void World::put_to_sleep(Body& body) {
   work.contact += body.kinetic_energy();
+  body.taken += body.kinetic_energy();
   reaction = reaction - body.mass * body.velocity;
   body.velocity = body.spin = {};
   body.awake = false;
@@ -902,12 +906,24 @@ void World::solve_island(std::span<const Link> links, std::span<RigidJoint* cons
                      solved_manifolds_.data(), static_cast<int>(solved_manifolds_.size()),
                      solved_joints_.data(), static_cast<int>(solved_joints_.size()), info, nullptr,
                      getDispatcher());
-  if (joined.empty()) keep_energy(links);  // what carries a building must not be scaled
+  // What carries a building must not be scaled.
+  if (joined.empty()) bound_pushes(links, keep_energy(links));
 }
 
-/// Contacts only take energy. What a solver that was cut short adds nevertheless is taken back by
-/// scaling all impulses of the island alike, which keeps momentum.
-void World::keep_energy(std::span<const Link> links) {
+/// Nor do pushes give more than contacts took.
+void World::bound_pushes(std::span<const Link> links, double taken) {
+  for (const Link& link : links)
+    for (std::uint32_t i = link.first; i < link.first + link.count; ++i)
+      grant_overlap(task.meetings[i], gravity);
+  pushed_.clear();
+  for (const btCollisionObject* object : solved_bodies_)
+    pushed_.push_back(static_cast<Body*>(object->getUserPointer()));
+  sunder::bound_pushes(pushed_, taken, gravity);
+}
+
+/// Contacts only take energy: returns what. What a solver that was cut short adds nevertheless is
+/// taken back by scaling all impulses of the island alike, which keeps momentum.
+double World::keep_energy(std::span<const Link> links) {
   double linear = 0, square = 0;  // work of the impulses, scaled by s: linear s + square s²
   for (const btCollisionObject* object : solved_bodies_) {
     const Body& body = *static_cast<const Body*>(object->getUserPointer());
@@ -918,7 +934,8 @@ void World::keep_energy(std::span<const Link> links) {
     linear += body.mass * dot(kick, before) + dot(turning, body.spin_then);
     square += 0.5 * (body.mass * dot(kick, kick) + dot(turning, turn));
   }
-  if (linear + square <= kEnergyRounding * (square - linear)) return;
+  if (linear + square <= kEnergyRounding * (square - linear))
+    return std::max(0.0, -(linear + square));
   const double share = linear < 0 ? -linear / square : 0;
   for (const btCollisionObject* object : solved_bodies_) {
     Body& body = *static_cast<Body*>(object->getUserPointer());
@@ -936,6 +953,7 @@ void World::keep_energy(std::span<const Link> links) {
       p.m_appliedImpulseLateral2 =
           share * (p.m_appliedImpulseLateral2 + m.given_across) - m.given_across;
     }
+  return 0;
 }
 
 /// Lists contacts and books the work of every impulse.
@@ -1008,6 +1026,7 @@ void World::integrateTransforms(btScalar) {
     (body->joints.empty() ? work.contact : work.joint) -= lifted;
     work.driven += body->mass * dot(gravity - Vec3{0, -params.gravity, 0}, body->centre - before);
     body->in_bullet->setWorldTransform(place(*body, body->axes, body->centre));
+    body->is_new = false;
   }
 }
 
@@ -1214,6 +1233,18 @@ void RigidWorld::set_iterations(int iterations) {
 
 std::uint64_t RigidWorld::solver_fallbacks() const {
   return impl_->world.task.fallbacks;
+}
+
+double RigidWorld::slow_together(std::span<const BodyId> ids, double energy) {
+  std::vector<Body*> bodies;
+  for (const BodyId id : ids)
+    if (Body& body = impl_->world.body(id); body.awake) bodies.push_back(&body);
+  return approach_common_motion(bodies, energy);
+}
+
+void RigidWorld::spend(BodyId id, double energy) {
+  Body& body = impl_->world.body(id);
+  if (body.moves) body.taken -= energy;
 }
 
 void RigidWorld::exempt(BodyId id, double seconds) {

@@ -310,9 +310,28 @@ void WallRun::go_through(Meeting m, const Answer& answer) {
   if (!passed && m.solved) take_from_rebound(m, crack_energy - unspent_);
   const double spent = world_.kinetic_energy() - energy_before + crack_energy;
   result_.energy.contact -= spent;
-  if (m.solved) unspent_ = std::max(unspent_ - spent, 0.0);
+  const double from_solver = m.solved ? std::clamp(spent, 0.0, unspent_) : 0;
+  if (m.solved) {
+    unspent_ = std::max(unspent_ - spent, 0.0);
+    world_.spend(m.striker, spent);
+  }
+  const double energy_between = world_.kinetic_energy();
   if (!passed && !m.solved)
     bounce(m, islands_[m.island].body, walls_[wall_index].surface(), crack_energy);
+  const double lost = energy_between - world_.kinetic_energy();
+  result_.energy.contact += stick_together(m, freed, spent - from_solver - lost);
+}
+
+// What a free wall lost to a blow depends on all of its mass; where cracks took more than what is
+// left of it and what broke off, they moved with it for a moment before they did.
+double WallRun::stick_together(const Meeting& m, const Freed& freed, double energy) {
+  if (!(energy > 0)) return 0;
+  std::vector<BodyId> bodies{m.striker};
+  if (islands_[m.island].body != kNoBody) bodies.push_back(islands_[m.island].body);
+  for (const std::uint32_t i : freed.islands) bodies.push_back(islands_[i].body);
+  std::ranges::sort(bodies);
+  bodies.erase(std::ranges::unique(bodies).begin(), bodies.end());
+  return world_.slow_together(bodies, energy);
 }
 
 // Momentum from the striker to what came loose: everything in its way moves on with it. False when
@@ -483,6 +502,7 @@ void WallRun::break_in_contact(const Meeting& m, double loss) {
   result_.energy.fracture += energy;
   result_.energy.contact -= energy;  // the solver counted it there
   unspent_ -= energy;
+  world_.spend(m.striker, energy);
   recorder_.add_event(
       {now_, wall, m.point, m.speed, answer.blow.utilisation, freed.bonds, freed.chunks});
 }
@@ -522,6 +542,7 @@ void WallRun::split_chunk(const Meeting& m, double loss) {
   result_.energy.fracture += energy;
   result_.energy.contact -= energy;
   unspent_ -= energy;
+  world_.spend(m.striker, energy);
   recorder_.add_event(
       {now_, wall_index, m.point, m.speed, used, 0, static_cast<std::uint32_t>(parts.size())});
 }

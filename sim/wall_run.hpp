@@ -207,6 +207,7 @@ class WallRun {
   double usable_speed(const Meeting& meeting) const;
   void take_from_rebound(const Meeting& meeting, double energy);
   void go_through(Meeting meeting, const Answer& answer);
+  double stick_together(const Meeting& m, const Freed& freed, double energy);
   bool hand_over(const Meeting& meeting, const Answer& answer, const Freed& freed, double mass,
                  double footprint);
   void push_island(std::uint32_t island, const SpeedProfile& profile, double speed, Vec3 along);

@@ -103,6 +103,31 @@ void place_point(Meeting& m, double dt) {
   }
 }
 
+void grant_overlap(const Meeting& m, Vec3 gravity) {
+  const auto is_new = [](const Body& body) { return body.awake && body.is_new; };
+  if (!(m.gap < 0) || !(is_new(*m.a) || is_new(*m.b))) return;
+  for (Body* body : {m.a, m.b})
+    if (body->awake) body->granted = std::max(body->granted, -m.gap * length(gravity) * body->mass);
+}
+
+void bound_pushes(std::span<Body* const> bodies, double taken, Vec3 gravity) {
+  double mass = 0, lift = 0;
+  for (Body* body : bodies) {
+    mass += body->mass;
+    lift -= body->mass * dot(gravity, body->push);
+    taken += std::exchange(body->taken, 0) + std::exchange(body->granted, 0);
+  }
+  if (lift > 0 && lift > taken) {
+    const double share = std::max(taken, 0.0) / lift;
+    for (Body* body : bodies) {
+      body->push = share * body->push;
+      body->turn = share * body->turn;
+    }
+    lift *= share;
+  }
+  for (Body* body : bodies) body->taken = (taken - lift) * (body->mass / mass);
+}
+
 double advance(Body& body, Vec3 gravity, double dt) {
   const bool met = body.slot != 0;
   const double rest = met ? dt - body.contact_time : dt;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/principal_axes.hpp"
@@ -60,6 +61,10 @@ struct Body {
   std::vector<RigidJoint*> joints;   ///< by age
   std::vector<const Body*> passes;   ///< bodies that it never touches
   std::vector<Overlap> overlaps;     ///< that are not pushed out
+  /// Energy that contacts took from it and pushing overlap out has not given back, J.
+  double taken = 0;
+  double granted = 0;  ///< for what it was put into, J
+  bool is_new = true;  ///< has not taken a step yet
   std::vector<const Body*> near;     ///< up to two joints away, sorted; valid if near_is_known
   bool near_is_known = true;
 
@@ -126,6 +131,13 @@ void set_approach(Meeting& meeting, Vec3 gravity, double dt);
 void drift_to_impulses(Body& body, Vec3 gravity);
 /// Fills gap_then, arms and bound from where the bodies have drifted to.
 void place_point(Meeting& meeting, double dt);
+/// Bodies in contact with each other are lifted out of overlaps (their push and turn) by no more
+/// energy than contacts took from them before, and `taken` (J) in this step; what is left is
+/// theirs, by mass.
+void bound_pushes(std::span<Body* const> bodies, double taken, Vec3 gravity);
+/// Bodies that take their first step are also lifted out of what they are put into: adds the energy
+/// for it to the two of a meeting.
+void grant_overlap(const Meeting& meeting, Vec3 gravity);
 /// From the impulses to the end of the step. Returns the energy that lifting the body out of an
 /// overlap gave, J.
 double advance(Body& body, Vec3 gravity, double dt);

@@ -675,6 +675,50 @@ END
   expect_exit 0 "$sunder" schema impact-report
   expect_files "s.json"
 }
+max_error() {  # chooses what the scene leaves open; a value that is none writes nothing
+  cat > s.json << END
+{"sunder": 1, "walls": [{"outline": {"rect": [1, 1]}, "pattern": {"type": "voronoi-grid", "cell": 0.5}}],
+ "projectiles": [{"radius": 0.1, "mass": 10, "position": [0.5, 0.5, 1], "velocity": [0, 0, -10]}],
+ "simulation": {"duration": 0.1}}
+END
+  cat > b.json << END
+{"sunder": 1, "building": {"posts": [2, 2], "storeys": 1}, "simulation": {"duration": 0.1}}
+END
+  local step last=1
+  for asked in 0.3 0.01 0.001; do
+    expect_exit 0 "$sunder" impact s.json --max-error $asked --report r.json
+    expect_text r.json '"asked": true'
+    expect_text r.json "\"max_error\": $asked"
+    expect_text r.json '"met": true'
+    expect_text r.json '"chosen": ["iterations", "step"], "step": '
+    step=$(sed -n 's/.*"chosen": \[[^]]*\], "step": \([0-9.e-]*\),.*/\1/p' r.json)
+    awk "BEGIN {exit !($step < $last)}" || fail "steps of $step s for $asked are not shorter"
+    last=$step
+  done
+  expect_exit 0 "$sunder" impact s.json --max-error 1e-9 --report r.json
+  expect_text r.json '"met": false'
+  expect_text err "max_error = 1e-9 is less than the settings give"
+  # What the scene gives stays.
+  expect_exit 0 "$sunder" impact s.json --set simulation.step=0.002 --max-error 0.3 --report r.json
+  expect_text r.json '"step": 0.002'
+  expect_exit 0 "$sunder" collapse b.json --max-error 0.02 --report r.json
+  expect_text r.json '"asked": true'
+  rm r.json
+  for n in 0 -1 2 nan inf abc 0x1 1e999 '[1]' '{}' true; do
+    for verb in impact collapse; do
+      expect_exit 2 "$sunder" $verb $([ $verb = impact ] && echo s || echo b).json \
+        "--max-error=$n" -o a.glb --report r.json
+      expect_text err "error: --max-error: "
+      expect_text err "(0, 1]"
+    done
+  done
+  expect_exit 2 "$sunder" impact s.json --max-error "" -o a.glb
+  expect_text err "--max-error needs a value"
+  expect_exit 2 "$sunder" impact s.json --max-error 0.1 --max-error 0.2 -o a.glb
+  expect_exit 2 "$sunder" impact s.json --set simulation.max_error=2 -o a.glb
+  expect_text err "error: --set: /simulation/max_error: 2 is outside (0, 1]"
+  expect_files "b.json s.json"
+}
 impact_is_the_same() {
   scene=$source/data/scenes/brick-door.json
   short="--set simulation.duration=1.2"

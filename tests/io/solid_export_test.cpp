@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "fracture/measure.hpp"
@@ -79,6 +82,50 @@ TEST(SolidExport, AGlbKeepsKindBondsVolumeAndBits) {
   EXPECT_EQ(read.walls[0].bonds, sample.solids[0].bonds.size());
   EXPECT_EQ(read.walls[0].volume_expected, sample.solids[0].volume_expected);
   EXPECT_EQ(measured(read).hash, measured(meshed).hash);
+}
+
+// Vertices near 0, the way in the node: where things stand in the world is as it was.
+TEST(SolidExport, ASolidFarFromItsOriginStandsWhereItIs) {
+  TriMesh mesh = test::gear();
+  for (Vec3& v : mesh.vertices) v = v + Vec3{64, -32, 128};
+  SolidModel solid;
+  solid.name = "far";
+  solid.pattern = SolidVoronoiParams{.count = 9, .points = {}, .sites = {}};
+  solid.position = {1, 2, 3};
+  solid.rotation = {0, 1, 0, 0};  // half a turn about y
+  Sample sample;
+  sample.solids.push_back(fracture_solid(solid, test::as_surface(mesh), 1000, {.seed = 3}));
+  const MeshedAsset meshed = sample.meshed();
+  const TestFolder folder;
+  for (const char* name : {"a.glb", "a.obj", "a.svg"}) export_asset(meshed, folder / name);
+  const Soundness found = measured(import_asset(folder / "a.glb"));
+  EXPECT_TRUE(found.is_sound());
+  EXPECT_LT(found.volume_error(), 1e-7);
+  EXPECT_EQ(found.hash, measured(meshed).hash);
+
+  const Glb glb(content_of(folder / "a.glb"));
+  const Json& root = glb.json["nodes"][0];
+  const auto vector = [](const Json& json) {
+    return Vec3{json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+  };
+  const Vec3 origin = vector(root["extras"]["sunder"]["origin"]), at = vector(root["translation"]);
+  EXPECT_LT(length(origin - Vec3{64, -32, 128}), 1);
+  EXPECT_LT(length(at - (Vec3{-origin.x, origin.y, -origin.z} + Vec3{1, 2, 3})), 1e-6);
+  EXPECT_LT(length(vector(glb.json["nodes"][1]["extras"]["sunder"]["centroid"])), 1);
+  for (const float x : glb.values(glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]))
+    EXPECT_LT(std::abs(x), 1.5f);
+
+  // In the world: half a turn and the way.
+  Vec3 least{1e9, 1e9, 1e9}, low = least;
+  for (const Vec3 v : mesh.vertices)
+    low = {std::min(low.x, 1 - v.x), std::min(low.y, 2 + v.y), std::min(low.z, 3 - v.z)};
+  std::istringstream obj(content_of(folder / "a.obj"));
+  for (std::string line; std::getline(obj, line);) {
+    Vec3 v;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &v.x, &v.y, &v.z) != 3) continue;
+    least = {std::min(least.x, v.x), std::min(least.y, v.y), std::min(least.z, v.z)};
+  }
+  EXPECT_LT(length(least - low), 1e-4);
 }
 
 TEST(SolidExport, AGlbHasTheModelsMaterialsAndColours) {

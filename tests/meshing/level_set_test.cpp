@@ -7,6 +7,7 @@
 
 #include "meshing/error.hpp"
 #include "meshing/random.hpp"
+#include "meshing/repair_remake.hpp"
 #include "meshing/sample_solids.hpp"
 #include "meshing/surface_defects.hpp"
 
@@ -79,6 +80,36 @@ TEST(LevelSet, TheSoundSurfaceIsSoundForAnyValues) {
     const auto diagnosis = diagnose(made);
     EXPECT_TRUE(diagnosis.is_solid()) << "seed " << seed << ": " << diagnosis.text();
   }
+}
+
+// Of the solid one: shells that enclose, or leave out, hardly anything say nothing about a model.
+TEST(LevelSet, SpecksAndBubblesBelowAVoxelGo) {
+  const auto ball = [](bool with_noise, float depth) {
+    LevelSet set{0.5, {}, {}};
+    for (int i = -9; i <= 20; ++i)
+      for (int k = -9; k <= 9; ++k)
+        for (int m = -9; m <= 9; ++m) {
+          auto value = static_cast<float>(std::sqrt(i * i + k * k + m * m) - 6.3);
+          if (with_noise && k == 0 && m == 0 && i == 15) value = -depth;
+          if (with_noise && k == 0 && m == 0 && i == 0) value = depth;
+          if (std::abs(value) < LevelSet::kBand || with_noise)
+            set.values.push_back({{i, k, m}, value});
+        }
+    return set;
+  };
+  const TriMesh clean = solid_surface(ball(false, 0));
+  for (const float depth : {0.001f, 0.1f, 0.5f}) {
+    EXPECT_GT(sound_surface(ball(true, depth)).triangles.size(),
+              sound_surface(ball(false, 0)).triangles.size());
+    const TriMesh made = solid_surface(ball(true, depth));
+    EXPECT_TRUE(diagnose(made).is_solid()) << diagnose(made).text();
+    EXPECT_EQ(made.triangles.size(), clean.triangles.size());
+    EXPECT_NEAR(volume(made), volume(clean), 1e-12);
+  }
+  // One inside, six neighbours that are far outside: what is all there is stays.
+  LevelSet speck = ball(true, 0.001f);
+  for (VoxelValue& v : speck.values) v.value = v.at == std::array{15, 0, 0} ? -0.001f : 1;
+  EXPECT_GT(volume(solid_surface(speck)), 0);
 }
 
 TEST(LevelSet, ThreadsDoNotChangeABit) {

@@ -53,5 +53,20 @@ TEST(Trig, UnitVectorsMatchTheLibraryAndAreExactAtQuarters) {
   EXPECT_EQ(unit_at_turns(7), (Vec2{1, 0}));
 }
 
+TEST(Trig, SixSinesHaveTheBitsOfEach) {
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    std::array<double, kSines> values{};
+    for (std::uint64_t k = 0; k < kSines; ++k)
+      values[k] =
+          i < 9 ? (static_cast<double>(i) - 4) / (k < 3 ? 4 : 8) : 200 * random_unit(1, i, k) - 100;
+    const auto turns = values;
+    sines_at_turns(values);
+    for (std::size_t k = 0; k < kSines; ++k)
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(values[k]),
+                std::bit_cast<std::uint64_t>(unit_at_turns(turns[k]).y))
+          << turns[k];
+  }
+}
+
 }  // namespace
 }  // namespace sunder

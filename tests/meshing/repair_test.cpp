@@ -154,6 +154,18 @@ TEST(Repair, PartsThatMeetInAPointAreDrawnApart) {
   EXPECT_NE(r.steps.at(0).find("1 vertex where parts met in a point"), std::string::npos);
 }
 
+// Two faces apart from the rest: the hole about them is filled with the same two, turned round.
+TEST(Repair, ShellsThatEncloseNothingAreDropped) {
+  TriMesh mesh = unit_cube();
+  append(mesh, box_mesh({2, 0, 0}, {3, 1, 1}));
+  mesh.triangles.resize(14);
+  const Repair r = repaired(mesh);
+  EXPECT_NEAR(r.volume_after, 1, 1e-15);
+  EXPECT_EQ(r.surface.mesh.triangles.size(), 12u);
+  EXPECT_EQ(r.steps, (std::vector<std::string>{"1 hole of 4 edges filled",
+                                               "1 shell enclosing nothing dropped"}));
+}
+
 TEST(Repair, CrossingBodiesBecomeOneWithinTheError) {
   TriMesh mesh = unit_cube();
   append(mesh, box_mesh({.51, .52, .53}, {1.5, 1.5, 1.5}));

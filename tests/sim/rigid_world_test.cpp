@@ -298,6 +298,93 @@ TEST(RigidWorld, EccentricImpactKeepsAngularMomentum) {
   EXPECT_GE(exact, 15);
 }
 
+// A plate of many parts on its narrow edge, hit; blocks and balls on it and about it.
+void add_crowd(RigidWorld& world, std::uint64_t seed) {
+  const auto r = [&](std::uint64_t k) { return random_unit(seed, k); };
+  const Vec3 plate{0.3 + r(2), 0.5 + r(3), 0.004 + 0.02 * r(4)};
+  std::vector<Prism> parts;
+  const int count = 1 + static_cast<int>(20 * r(5));
+  for (int i = 0; i < count; ++i) {
+    const double low = plate.x * (2.0 * i / count - 1),
+                 high = plate.x * (2.0 * (i + 1) / count - 1);
+    parts.push_back(
+        {{{low, -plate.y}, {high, -plate.y}, {high, plate.y}, {low, plate.y}}, plate.z});
+  }
+  BodyParams standing = block_params(5000 * plate.x * plate.y * plate.z, plate, {0, plate.y, 0}, 1);
+  standing.angular_velocity = {0.2 * r(6), 0.1 * r(7), 0.1 * (r(8) - 0.5)};
+  world.add_body(standing, parts);
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    const auto draw = [&](std::uint64_t k) { return random_unit(seed, i + 1, k); };
+    const double size = 0.05 + 0.1 * draw(0);
+    const Vec3 at{0.5 * static_cast<double>(i) - 1, size * (1 + draw(1)), 0.4 + 0.2 * draw(2)};
+    BodyParams params = block_params(1 + 50 * draw(3), {size, size, size}, at, i + 2);
+    params.velocity = {draw(4) - 0.5, 0, -4 * draw(5)};
+    params.surface = {draw(6), draw(7)};
+    if (i % 2 == 0) {
+      add_block(world, params, {size, size, size});
+    } else {
+      world.add_sphere(params, size);
+    }
+  }
+}
+
+TEST(RigidWorld, ContactsGiveNoEnergyHoweverCoarseTheStep) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const double dt = 0.001 * std::pow(50, random_unit(seed, 9));
+    const int iterations = 1 + static_cast<int>(30 * random_unit(seed, 10));
+    RigidWorld world({.iterations = iterations, .sleep = seed % 2 == 0});
+    add_crowd(world, seed);
+    const double start = energy(world);
+    double taken = 0, least = 0, worst = 0;
+    for (double time = 0; time < 0.6; time += dt) {
+      const double before = energy(world);
+      world.step(dt);
+      const double lost = world.work().contact + world.work().friction;
+      worst = std::max(worst, std::fabs(energy(world) - before + lost));
+      taken += lost;
+      least = std::min(least, taken);
+    }
+    EXPECT_GT(least, -1e-9 * start) << "seed " << seed << ", step " << dt;
+    EXPECT_LT(worst, 1e-9 * start) << "seed " << seed << ", step " << dt;
+  }
+}
+
+TEST(RigidWorld, BodiesThatStickForAMomentKeepTheirMomenta) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RigidWorld world({.gravity = 0, .has_ground = false});
+    std::vector<BodyId> ids;
+    for (std::uint64_t i = 0; i < 2 + seed % 4; ++i) {
+      const auto r = [&](std::uint64_t k) { return random_unit(seed, i, k); };
+      const Vec3 half{0.05 + r(0), 0.05 + r(1), 0.05 + r(2)};
+      BodyParams params =
+          block_params(1 + 20 * r(3), half, {5.0 * static_cast<double>(i), r(4), r(5)}, i + 1);
+      params.pose.rotation = normalised({r(6), r(7), 1, r(8)});
+      params.velocity = {r(9), 3 * r(10), -r(11)};
+      params.angular_velocity = {r(12), r(13), -4 * r(14)};
+      ids.push_back(add_block(world, params, half));
+    }
+    const Vec3 momentum = world.momentum(), angular = world.angular_momentum({1, 2, 3});
+    const double before = world.kinetic_energy();
+    const double asked = 0.3 * before;
+    const double first = world.slow_together(ids, asked);
+    EXPECT_NEAR(before - world.kinetic_energy(), first, 1e-12 * before);
+    EXPECT_LE(first, asked * (1 + 1e-12));
+    const double middle = world.kinetic_energy();
+    const double rest = world.slow_together(ids, 10 * before);
+    EXPECT_NEAR(middle - world.kinetic_energy(), rest, 1e-12 * before);
+    EXPECT_TRUE(first == asked || rest < 1e-12 * before) << "all, or all there is";
+    EXPECT_LT(length(world.momentum() - momentum), 1e-12 * length(momentum));
+    EXPECT_LT(length(world.angular_momentum({1, 2, 3}) - angular), 1e-11 * length(angular));
+    // They move as one then.
+    const Vec3 spin = world.angular_velocity(ids[0]);
+    for (const BodyId id : ids) {
+      EXPECT_LT(length(world.angular_velocity(id) - spin), 1e-12);
+      EXPECT_LT(length(world.velocity(id) - world.velocity_at(ids[0], world.centre(id))), 1e-11);
+    }
+    EXPECT_LT(world.slow_together(ids, before), 1e-12 * before);
+  }
+}
+
 TEST(RigidWorld, BouncingBallsBookEveryJoule) {
   RigidWorld world({.ground = {0.5, 0.5}});
   for (int i = 0; i < 3; ++i) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/stress/trial.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <limits>
 
@@ -22,6 +24,17 @@ struct Run {
   fs::path stem;
   Trial trial;
 
+  bool is_short() const { return bench.seconds < kMostSeconds; }
+  /// Of a command: two minutes, or what is left of the trial's.
+  Limits limits() const {
+    const double left = is_short() ? bench.seconds - trial.seconds : kMostSeconds;
+    return {static_cast<unsigned>(std::max(1.0, std::ceil(left)))};
+  }
+  /// A command that was given up: nothing that it did is judged.
+  bool gives_up(const Outcome& outcome) {
+    if (!is_short() || outcome.signal != SIGALRM) return false;
+    return trial.too_long = true;
+  }
   fs::path file(const char* suffix) const { return stem.string() + suffix; }
   void fail(const std::string& what) { trial.failures.push_back(what); }
   void measure(const char* name, double value, double limit) {
@@ -49,8 +62,9 @@ bool run_verb(Run& run, const std::vector<std::string>& more, Json& report) {
   std::vector<std::string> words = {run.bench.program, run.kind.verb, run.file(".json"),
                                     "--quiet",         "--report",    out};
   words.insert(words.end(), more.begin(), more.end());
-  const Outcome outcome = run_command(words, run.stem, {});
+  const Outcome outcome = run_command(words, run.stem, run.limits());
   run.trial.seconds += outcome.seconds;
+  if (run.gives_up(outcome)) return false;
   // The report may say that an asset is not sound: exit 1, judged by its numbers.
   if (outcome.exit_code == 0 || outcome.exit_code == 1) {
     report = Json::parse(std::ifstream(out), nullptr, false);
@@ -63,7 +77,7 @@ bool run_verb(Run& run, const std::vector<std::string>& more, Json& report) {
   if (!run.trial.refused)
     run.fail(outcome.signal != 0
                  ? "ended by signal " + std::to_string(outcome.signal) +
-                       (outcome.signal == 14 ? " (time limit)" : "")
+                       (outcome.signal == SIGALRM ? " (time limit)" : "")
                  : "exit code " + std::to_string(outcome.exit_code) + ": " + outcome.talk);
   return false;
 }
@@ -83,11 +97,13 @@ void judge_same(Run& run, const Json& report, const std::vector<std::string>& mo
 /// What the file holds, m³.
 double judge_file(Run& run) {
   const fs::path glb = run.file(".glb"), out = run.file("-check.json");
-  const Outcome outcome =
-      run_command({run.bench.program, "check", glb, "--quiet", "--report", out}, run.stem, {});
+  const Outcome outcome = run_command(
+      {run.bench.program, "check", glb, "--quiet", "--report", out}, run.stem, run.limits());
+  run.trial.seconds += outcome.seconds;
   const Json report = Json::parse(std::ifstream(out), nullptr, false);
   fs::remove(out);
   fs::remove(glb);
+  if (run.gives_up(outcome)) return 0;
   if (report.is_discarded()) {
     run.fail("its file cannot be checked: " + outcome.talk);
     return 0;
@@ -104,7 +120,7 @@ void judge_asset(Run& run, const Json& report, bool other_threads) {
   run.measure("volume_error", number(report, "volume_error"), 1e-6);
   if (report["sound"] != true) run.fail("it is not sound");
   judge_file(run);
-  if (other_threads) judge_same(run, report, {"--threads", "1"}, "with one thread");
+  if (other_threads && !run.trial.too_long) judge_same(run, report, {"--threads", "1"}, "with one thread");
 }
 
 /// What breaks without skipping. The same bytes, but for panels: they are other bodies then.
@@ -125,6 +141,7 @@ void judge_run(Run& run, const Json& report, bool again) {
   // Contacts hold bodies within parts of a millimetre: what lifts everything by one is not
   // resolved.
   const double unresolved = 1e-3 * 9.81 * 2500 * judge_file(run);
+  if (run.trial.too_long) return;
   const double scale = std::abs(in) + std::abs(potential) + std::abs(strain) + unresolved;
   run.measure("momentum_error", number(report, "momentum_error"), 1e-9);
   run.measure("numerical share of the energy", std::abs(number(energy, "numerical")) / scale, 1e-3);
@@ -138,7 +155,7 @@ void judge_run(Run& run, const Json& report, bool again) {
                                 std::numeric_limits<double>::infinity()});
   if (!again) return;
   judge_same(run, report, {"--threads", "1"}, "with one thread");
-  judge_skipping(run, report);
+  if (!run.trial.too_long) judge_skipping(run, report);
 }
 
 }  // namespace

@@ -27,15 +27,21 @@ struct Kind {
 std::span<const Kind> kinds();
 
 struct Trial {
-  bool refused = false;  ///< a clear error: exit code 3 and a message
+  bool refused = false;   ///< a clear error: exit code 3 and a message
+  bool too_long = false;  ///< stopped at Bench::seconds: not judged to the end
   double seconds = 0;
   std::vector<Measure> measures;
   std::vector<std::string> failures;  ///< in words; empty: sound
 };
 
+/// Most that a program may take for one scene, s: more is a failure.
+inline constexpr double kMostSeconds = 120;
+
 /// Where the program is and where its files may go.
 struct Bench {
   std::filesystem::path program, folder;
+  double seconds = kMostSeconds;  ///< for a trial; less than kMostSeconds: what takes longer is
+                                  ///< given up
 };
 
 /// Makes the scene of a seed and judges what the program does with it. A scene that failed stays in
