@@ -13,7 +13,7 @@ fault() {
 benches=$(sed -n 's/^sunder_bench(\([a-z_]*\) .*/\1/p' bench/CMakeLists.txt)
 places=$(sed -n 's/^<!-- bench: \(.*\) -->$/\1/p' docs/*.md)
 # Names of blocks as the sources have them: "pattern window".
-printed=$(grep -hoE "\"($(tr '\n' '|' <<< "$benches" | sed 's/|$//')) [a-z0-9-]+\"" bench/*.cpp |
+printed=$(grep -hoE "\"($(tr '\n' '|' <<< "$benches" | sed 's/|$//')) [a-z0-9-]+\"" bench/*.cpp bench/*.js |
   tr -d '"' | sort -u)
 printed+=$'\nstress'  # ./dev stress docs
 

@@ -31,7 +31,15 @@ function collectTasks() {
 export async function openPage(
   { browser },
   path,
-  { query = "", width = 1280, height = 800, scale = 1, scheme = "light", waits = true, observes = false } = {},
+  {
+    query = "",
+    width = 1280,
+    height = 800,
+    scale = 1,
+    scheme = "light",
+    waits = true,
+    observes = false,
+  } = {},
 ) {
   const context = await browser.newContext({
     viewport: { width, height },

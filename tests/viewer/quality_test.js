@@ -74,8 +74,22 @@ test("spans are sorted by time, and counted up to one", () => {
   const keys = [0.5, Infinity, -Infinity];
   const result = sorted(list, spans, ({ part }) => keys[part]);
   assert.deepEqual([...result.list], [30, 31, 32, 10, 11, 12, 20, 21, 22, 23, 24, 25]);
-  assert.deepEqual(spans.map(({ start }) => start), [3, 6, 0]);
-  for (const [time, count] of [[0, 3], [0.5, 3], [0.51, 6], [1e9, 6]])
+  assert.deepEqual(
+    spans.map(({ start }) => start),
+    [3, 6, 0],
+  );
+  for (const [time, count] of [
+    [0, 3],
+    [0.5, 3],
+    [0.51, 6],
+    [1e9, 6],
+  ])
     assert.equal(countBefore(result, time), count);
-  assert.equal(countBefore(sorted(new Uint32Array(0), [], () => 0), 1), 0);
+  assert.equal(
+    countBefore(
+      sorted(new Uint32Array(0), [], () => 0),
+      1,
+    ),
+    0,
+  );
 });

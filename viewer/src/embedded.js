@@ -49,7 +49,11 @@ export async function embeddedBytes({ id, size, words }, breath) {
   if (!globalThis.DecompressionStream)
     throw new Error("this browser is too old to unpack the file: use one of 2023 or later");
   const text = document.getElementById(id).textContent.trim();
-  const packed = await decodeBase64(text, (text.length / 4) * 3 - (text.match(/=*$/)[0].length), breath);
+  const packed = await decodeBase64(
+    text,
+    (text.length / 4) * 3 - text.match(/=*$/)[0].length,
+    breath,
+  );
   const stream = new DecompressionStream("deflate-raw");
   const writer = stream.writable.getWriter();
   writer.write(packed).catch(() => {}); // the reader below tells

@@ -234,6 +234,7 @@ class Page {
   }
 
   paint() {
+    this.world.isTinted = false;
     this.colours.paint(this.mode.id, this.player.time, (part, rgb, amount) =>
       this.world.paint(part, rgb, amount),
     );

@@ -2,7 +2,7 @@
 // Which triangles can be seen when and from where, so that the others need not be drawn. The faces
 // of cracks are behind each other until a chunk beside them moves; the flat faces of what never
 // moves are seen from one side only.
-import { place } from "./pose.js";
+import { kIdentity, place } from "./pose.js";
 import { kStateSize } from "./motion.js";
 
 const kFewest = 4000; // triangles of one direction for which a group of its own is worth it
@@ -105,13 +105,20 @@ class Walls {
       const turn = [0, 0, 0, 1, state[q], state[q + 1], state[q + 2], state[q + 3]];
       place(turn, 0, ...n, n);
     }
-    return ((Math.round(n[0]) + 128) << 16) | ((Math.round(n[1]) + 128) << 8) | (Math.round(n[2]) + 128);
+    return (
+      ((Math.round(n[0]) + 128) << 16) | ((Math.round(n[1]) + 128) << 8) | (Math.round(n[2]) + 128)
+    );
   }
 
   worldOf(part, vertex) {
     const { position } = this.geometry;
     const [x, y, z] = position.subarray(3 * vertex, 3 * vertex + 3);
     return place(this.motion.state, part * kStateSize, x, y, z, this.point);
+  }
+
+  isUnmoved(part) {
+    const at = part * kStateSize;
+    return kIdentity.every((value, k) => this.motion.state[at + k] === value);
   }
 
   codeOf(index) {
@@ -129,7 +136,11 @@ class Walls {
       for (let i = span.start; i < span.start + span.count; i += 3) {
         const direction = this.directionOf(span.part, list[i]);
         const last = pieces.at(-1);
-        if (last?.part === span.part && last.direction === direction && i === last.start + last.count)
+        if (
+          last?.part === span.part &&
+          last.direction === direction &&
+          i === last.start + last.count
+        )
           last.count += 3;
         else pieces.push({ part: span.part, start: i, count: 3, direction });
       }
@@ -151,10 +162,20 @@ class Walls {
     let block = null;
     for (const piece of pieces) {
       if (block && block.count >= 3 * kBlocks) (yield block, (block = null));
-      block ??= { pieces: [], count: 0, normal, least: Infinity, low: [1, 1, 1].map(() => Infinity), high: [1, 1, 1].map(() => -Infinity) };
+      block ??= {
+        pieces: [],
+        count: 0,
+        normal,
+        isUnmoved: true,
+        least: Infinity,
+        low: [1, 1, 1].map(() => Infinity),
+        high: [1, 1, 1].map(() => -Infinity),
+      };
       block.pieces.push(piece);
       block.count += piece.count;
-      for (let i = piece.start; i < piece.start + piece.count; ++i) this.include(block, piece.part, list[i]);
+      for (let i = piece.start; i < piece.start + piece.count; ++i)
+        this.include(block, piece.part, list[i]);
+      block.isUnmoved &&= this.isUnmoved(piece.part);
     }
     if (block) yield block;
   }
@@ -173,8 +194,9 @@ class Walls {
 
 /**
  * Puts the triangles of a material in a new order: those of parts that move, then blocks of those
- * that never do. Returns the blocks, [{start, count, low, high, normal, least}]: a block's faces
- * can be seen from a point p only if p · normal > least (normal null: from anywhere).
+ * that never do. Returns how many indices the former have, and the blocks, [{start, count, low,
+ * high, normal, least, isUnmoved}]: a block's faces can be seen from a point p only if
+ * p · normal > least (normal null: from anywhere); isUnmoved: its parts' frames are the world's.
  */
 export async function blocks(model, material, breath) {
   const { geometry, motion } = model;

@@ -35,17 +35,15 @@ export class Picker {
     this.world = world;
   }
 
-  // Spans of each part, of all lists; made at the first click.
-  spansOf(model) {
-    if (this.model === model) return this.spans;
-    this.model = model;
-    this.spans = model.parts.map(() => []);
-    const { materials, lists, spans } = model.geometry;
+  // Spans of some parts in all lists, by part.
+  spansOf(parts) {
+    const found = new Map(parts.map((part) => [part, []]));
+    const { materials, lists, spans } = this.world.model.geometry;
     spans.forEach((own, m) => {
       for (const { part, start, count } of own)
-        this.spans[part].push({ list: lists[m], start, count, isInner: materials[m].isInner });
+        found.get(part)?.push({ list: lists[m], start, count, isInner: materials[m].isInner });
     });
-    return this.spans;
+    return found;
   }
 
   /** The part at a place in CSS pixels from the canvas's corner; null: none. */
@@ -61,12 +59,13 @@ export class Picker {
   /** The first part that a ray meets; `d` of length 1. */
   along(o, d) {
     const { model } = this.world;
-    const spans = this.spansOf(model);
+    const candidates = this.candidates(o, d);
+    const spans = this.spansOf(candidates.map(({ part }) => part));
     let best = null,
       nearest = Infinity;
-    for (const { part, begin } of this.candidates(o, d)) {
+    for (const { part, begin } of candidates) {
       if (begin > nearest) break;
-      const at = this.hit(part, spans[part], o, d);
+      const at = this.hit(part, spans.get(part), o, d);
       if (at < nearest) ((nearest = at), (best = model.parts[part]));
     }
     return best;

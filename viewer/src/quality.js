@@ -39,7 +39,8 @@ export class Quality {
     if (length < kJudged && this.intervals.reduce((a, b) => a + b) < kEnough) return;
     const typical = this.intervals.sort((a, b) => a - b)[length >> 1];
     this.intervals = [];
-    if (typical > kSlow) this.wanted = Math.min(this.wanted + (typical > 3 * kSlow ? 2 : 1), kLeast);
+    if (typical > kSlow)
+      this.wanted = Math.min(this.wanted + (typical > 3 * kSlow ? 2 : 1), kLeast);
     this.isQuick = typical < kQuick;
   }
 

@@ -207,11 +207,12 @@ void main() {
 
 /**
  * Surfaces for slow machines: lit in the vertices, by the sky and the sun without shadows. The
- * colours of loads are left to surfaceMaterial().
+ * colours of loads are left to surfaceMaterial(). `isStill`: vertices are where they belong.
  */
-export function fastMaterial({ color, vertexColors }, uniforms) {
+export function fastMaterial({ color, vertexColors, isStill }, uniforms) {
   return new ShaderMaterial({
     glslVersion: GLSL3,
+    defines: isStill ? { IS_STILL: "" } : {},
     uniforms: { ...uniforms, base: { value: color } },
     vertexColors,
     polygonOffset: true,
@@ -219,17 +220,25 @@ export function fastMaterial({ color, vertexColors }, uniforms) {
     polygonOffsetUnits: 1,
     vertexShader: `${kPlacing.replace("attribute", "in")}
 uniform vec3 base, skyLight, groundLight, sunLight, sunWay;
+uniform float painted;
 flat out vec3 shade;
 void main() {
-  vec4 turn = motionTexel(1u), tint = lookTexel(0u);
-  vec3 n = turned(turn, normal);
-  gl_Position = projectionMatrix * viewMatrix * vec4(placedBy(motionTexel(0u), turn, position), 1.0);
+#ifdef IS_STILL
+  vec3 n = normal, at = position;
+#else
+  vec4 turn = motionTexel(1u);
+  vec3 n = turned(turn, normal), at = placedBy(motionTexel(0u), turn, position);
+#endif
+  gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
   vec3 own = base;
 #ifdef USE_COLOR_ALPHA
   own *= color.rgb;
 #endif
-  own = mix(own, tint.rgb, tint.a);
-  own = mix(own, vec3(1.0, 0.45, 0.02), 0.75 * lookTexel(1u).z);
+  if (painted > 0.5) {
+    vec4 tint = lookTexel(0u);
+    own = mix(own, tint.rgb, tint.a);
+    own = mix(own, vec3(1.0, 0.45, 0.02), 0.75 * lookTexel(1u).z);
+  }
   vec3 light = mix(groundLight, skyLight, 0.5 * n.y + 0.5) + sunLight * max(dot(n, sunWay), 0.0);
   shade = pow(clamp(own * light, 0.0, 1.0), vec3(1.0 / 2.2));
 }`,

@@ -61,6 +61,7 @@ export class Surfaces {
       index: new BufferAttribute(geometry.lists[i], 1),
       full,
       fast: map ? full : fastMaterial(options, this.uniforms),
+      still: map ? full : fastMaterial({ ...options, isStill: true }, this.uniforms),
       depth: shadowMaterial(this.uniforms),
       source,
     };
@@ -68,11 +69,14 @@ export class Surfaces {
     this.add(kit, { isWhole: true });
     if (byTime) this.add(kit, { byTime });
     if (moving) this.add(kit, { start: 0, count: moving });
-    for (const block of blocks ?? []) this.add(kit, { start: block.start, count: block.count, block });
+    for (const block of blocks ?? [])
+      this.add(kit, { start: block.start, count: block.count, block });
   }
 
-  add({ index, full, fast, depth, source }, range) {
+  add(kit, range) {
+    const { index, full, depth, source } = kit;
     const { block, start, count } = range;
+    const fast = block?.isUnmoved ? kit.still : kit.fast;
     const mesh = new Mesh(this.geometryOf(index, block && sphereOf(block)), full);
     if (count) mesh.geometry.setDrawRange(start, count);
     mesh.customDepthMaterial = depth;

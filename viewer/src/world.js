@@ -76,6 +76,7 @@ export class World {
       motionMap: { value: null },
       lookMap: { value: null },
       showLoads: { value: 0 },
+      painted: { value: 0 },
       explode: { value: 0 },
       pixels: { value: 800 },
       ink: { value: new Color() },
@@ -99,6 +100,7 @@ export class World {
   show(model) {
     this.clear();
     this.model = model;
+    this.picked = new Set();
     const count = model.parts.length;
     this.motionMap = this.uniforms.motionMap.value = floatTexture(count * kMotionTexels);
     this.lookMap = this.uniforms.lookMap.value = floatTexture(count * kLookTexels);
@@ -108,7 +110,10 @@ export class World {
     this.surfaces = new Surfaces(model, this.uniforms, (source) => this.textureOf(source));
     this.scene.add(...this.surfaces.meshes);
     this.addLines(model.geometry.lines);
-    this.widest = model.geometry.widths.reduce((a, b, i) => model.motion.start[i] === Infinity ? Math.max(a, b) : a, 0);
+    this.widest = model.geometry.widths.reduce(
+      (a, b, i) => (model.motion.start[i] === Infinity ? Math.max(a, b) : a),
+      0,
+    );
     this.graph = new Graph(model, this.uniforms);
     this.scene.add(this.graph.object);
     this.fit();
@@ -261,11 +266,14 @@ export class World {
       (this.look[at + 1] = rgb[1]),
       (this.look[at + 2] = rgb[2]),
       (this.look[at + 3] = amount));
+    this.isTinted ||= amount > 0;
     this.lookMap.needsUpdate = true;
   }
 
   mark(part, isPicked) {
     this.look[part.index * 4 * kLookTexels + 6] = isPicked ? 1 : 0;
+    if (isPicked) this.picked.add(part);
+    else this.picked.delete(part);
     this.lookMap.needsUpdate = true;
   }
 
@@ -284,7 +292,13 @@ export class World {
   renewShadows() {
     const now = performance.now();
     const isLate = now - (this.shadowTime ?? 0) > kShadowPause;
-    if (!this.shown.shadows || !this.hasOldShadows || this.level > 1 || (this.level === 1 && !isLate)) return;
+    if (
+      !this.shown.shadows ||
+      !this.hasOldShadows ||
+      this.level > 1 ||
+      (this.level === 1 && !isLate)
+    )
+      return;
     this.hasOldShadows = false;
     this.shadowTime = now;
     this.renderer.shadowMap.needsUpdate = true;
@@ -305,8 +319,10 @@ export class World {
   showLines() {
     const { model, lines, shown, uniforms, camera } = this;
     const largest = this.widest * uniforms.pixels.value;
-    const distance = new Box3(new Vector3(...model.box.low), new Vector3(...model.box.high))
-      .distanceToPoint(camera.position);
+    const distance = new Box3(
+      new Vector3(...model.box.low),
+      new Vector3(...model.box.high),
+    ).distanceToPoint(camera.position);
     const isSmall = uniforms.explode.value === 0 && largest < kSmallest * distance;
     const isMoving = countBefore(model.lines, uniforms.time.value);
     lines.visible = shown.edges && !shown.wireframe && this.level < 2;
@@ -345,6 +361,7 @@ export class World {
   draw() {
     this.showLines();
     this.renewShadows();
+    this.uniforms.painted.value = this.isTinted || this.picked.size > 0 ? 1 : 0;
     this.renderer.render(this.scene, this.camera);
   }
 }
