@@ -311,7 +311,7 @@ export class World {
     const isFast = this.level > 1 && this.uniforms.showLoads.value === 0;
     this.surfaces.setShown({ wireframe, outer, isExploded, isFast });
     this.graph.object.visible = graph;
-    this.studio.setShadows(shadows);
+    this.studio.setShadows(shadows && this.level < 2);
     this.refreshShadows();
   }
 
