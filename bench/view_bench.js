@@ -37,6 +37,7 @@ const kWindows = [
   { name: "desktop", width: 1280, height: 800 },
 ];
 const kPlayed = 8000; // ms
+const kBlock = "view page";
 
 const work = mkdtempSync(join(tmpdir(), "sunder-view-bench-"));
 const inWork = (name) => join(work, name);
@@ -196,7 +197,7 @@ try {
   const results = [];
   for (const window of kWindows) results.push(await measure(chromium, window));
   const version = chromium.browser.version().split(".")[0];
-  console.log("\n<!-- bench: view page -->");
+  console.log(`\n<!-- bench: ${kBlock} -->`);
   console.log(
     `A wall of ${chunks} chunks, ${freed} of them set free; ${sizes}; Chromium ${version}, SwiftShader; ` +
       `load of the machine before it began: ${load.toFixed(1)}.\n`,
