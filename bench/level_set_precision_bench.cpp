@@ -70,9 +70,9 @@ WorkPlot plot_of(const std::vector<Point>& points, double Point::*error, const c
                 .time_axis = "processor ms, one thread",
                 .least_error = 1e-17,
                 .omissions =
-                    "Houdini, Blender's Cell Fracture and NVIDIA Blast, which are not here "
-                    "(times quoted in [solids.md](solids.md#measured)); adaptive level "
-                    "sets; meshes that are no solids, which only a level set can repair.",
+                    "Houdini and NVIDIA Blast, which are not here (Blast's times are quoted in "
+                    "[solids.md](solids.md#measured)); Blender's Cell Fracture, which "
+                    "[performance.md](performance.md#solids) has; adaptive level sets; meshes that are no solids, which only a level set can repair.",
                 .points = {}};
   for (const Point& p : points)
     plot.points.push_back(

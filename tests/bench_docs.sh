@@ -13,12 +13,20 @@ fault() {
 benches=$(sed -n 's/^sunder_bench(\([a-z_]*\) .*/\1/p' bench/CMakeLists.txt)
 places=$(sed -n 's/^<!-- bench: \(.*\) -->$/\1/p' docs/*.md)
 # Names of blocks as the sources have them: "pattern window".
-printed=$(grep -hoE "\"($(tr '\n' '|' <<< "$benches" | sed 's/|$//')) [a-z0-9-]+\"" bench/*.cpp |
+printed=$(grep -hoE "\"($(tr '\n' '|' <<< "$benches" | sed 's/|$//')) [a-z0-9-]+\"" bench/*.cpp bench/*.js |
   tr -d '"' | sort -u)
 printed+=$'\nstress'  # ./dev stress docs
 
 for bench in $benches; do
   grep -q "^$bench " <<< "$places" || fault "no page shows anything of ./dev bench $bench"
+  grep -qE "^$bench,[^,]*,[0-9]+,[0-9a-f]{7,}\+?," docs/bench/runs.csv ||
+    fault "docs/bench/runs.csv does not tell the commit of ./dev bench $bench"
+done
+for results in docs/bench/*.csv; do
+  head -1 "$results" | grep -q ',commit,' || fault "$results has no column for the commit"
+  if tail -n +2 "$results" | grep -qvE ',[0-9a-f]{7,}\+?,"[^"]*",[0-9-]{10}$'; then
+    fault "$results has a line without its commit"
+  fi
 done
 while read -r place; do
   grep -qxF "$place" <<< "$printed" || fault "a page waits for \"$place\", which no bench prints"

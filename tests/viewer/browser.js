@@ -19,19 +19,37 @@ export async function launch() {
   return { browser, painter };
 }
 
-/** A page that is open and drawn; `faults` collects what it should not do. */
+// Lengths of all tasks over 50 ms, in `tasks`.
+function collectTasks() {
+  globalThis.tasks = [];
+  new PerformanceObserver((list) =>
+    list.getEntries().forEach(({ duration }) => tasks.push(duration)),
+  ).observe({ type: "longtask", buffered: true });
+}
+
+/** A page that is open and drawn; `faults` collects what it should not do; `observes`: see above. */
 export async function openPage(
   { browser },
   path,
-  { query = "", width = 1280, height = 800, scheme = "light", waits = true } = {},
+  {
+    query = "",
+    width = 1280,
+    height = 800,
+    scale = 1,
+    scheme = "light",
+    waits = true,
+    observes = false,
+  } = {},
 ) {
   const context = await browser.newContext({
     viewport: { width, height },
+    deviceScaleFactor: scale,
     colorScheme: scheme,
     offline: true,
   });
   const page = await context.newPage();
   page.setDefaultTimeout(60000);
+  if (observes) await page.addInitScript(collectTasks);
   const faults = [];
   page.on("console", (message) => faults.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
@@ -47,7 +65,7 @@ export async function openPage(
   return Object.assign(page, { faults });
 }
 
-/** A PNG of the canvas, or of all, after everything asked for is drawn. */
+/** A PNG of the canvas, or of all, after everything asked for is drawn in full. */
 export async function shoot(page, { all = false, path } = {}) {
   await page.evaluate(
     () =>
@@ -55,6 +73,7 @@ export async function shoot(page, { all = false, path } = {}) {
         requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 60))),
       ),
   );
+  await page.waitForFunction(() => document.documentElement.dataset.level === "0");
   const clip = all ? undefined : await page.locator("#view").boundingBox();
   return page.screenshot({ clip, path });
 }

@@ -218,6 +218,23 @@ test("explode, wireframe, edges, outer faces, graph and shadows are to be seen",
   });
 });
 
+test("what is out of sight is not drawn, and not missed", async () => {
+  for (const time of [0, 0.06, 0.5]) {
+    const drawn = [];
+    // Exploded, if only by 1/10000, everything is drawn.
+    for (const explode of ["0", "1e-4"])
+      await withPage("wall.html", { query: `?t=${time}&explode=${explode}` }, async (page) => {
+        const picture = await shoot(page, { path: join(out, `wall-all-${explode}-${time}.png`) });
+        const triangles = await page.evaluate(() => document.documentElement.dataset.triangles);
+        drawn.push({ picture, triangles: Number(triangles) });
+      });
+    const [some, all] = drawn;
+    const changed = await difference(chromium, some.picture, all.picture);
+    assert.ok(changed < 1e-3, `at ${time} s ${changed} of the picture differs`);
+    assert.ok(some.triangles < 0.9 * all.triangles, `${some.triangles} of ${all.triangles}`);
+  }
+});
+
 test("a click on a chunk shows its numbers, on nothing clears them", async () => {
   await withPage("wall.html", {}, async (page) => {
     const view = await page.locator("#view").boundingBox();

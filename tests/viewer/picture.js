@@ -5,5 +5,5 @@ import { launch, openPage, shoot } from "./browser.js";
 
 const [page, query, out] = process.argv.slice(2);
 const chromium = await launch();
-await shoot(await openPage(chromium, resolve(page), { query }), { all: true, path: out });
+await shoot(await openPage(chromium, resolve(page), { query, scale: 2 }), { all: true, path: out });
 await chromium.browser.close();

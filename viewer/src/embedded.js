@@ -7,33 +7,53 @@ export function embeddedList() {
   return element ? JSON.parse(element.textContent) : [];
 }
 
-function decodeBase64(text) {
-  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
-  const binary = atob(text);
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+const kMany = 2 ** 20; // bytes or characters at a time
+
+// In slices of whole groups of four characters.
+async function decodeBase64(text, size, breath) {
+  const bytes = new Uint8Array(size);
+  let to = 0;
+  for (let at = 0; at < text.length; at += kMany) {
+    const part = text.slice(at, at + kMany);
+    if (Uint8Array.fromBase64) {
+      const some = Uint8Array.fromBase64(part);
+      (bytes.set(some, to), (to += some.length));
+    } else {
+      const binary = atob(part);
+      for (let i = 0; i < binary.length; ++i) bytes[to++] = binary.charCodeAt(i);
+    }
+    if (breath.isDue) await breath.take();
+  }
   return bytes;
 }
 
 // From `start` on the first bytes of all words of four come first, then the second, third, fourth:
 // so they pack better. What is left of the last word follows as it is.
-function inWords(bytes, start) {
+async function inWords(bytes, start, breath) {
   const count = Math.floor((bytes.length - start) / 4);
   const result = new Uint8Array(bytes.length);
   result.set(bytes.subarray(0, start));
   result.set(bytes.subarray(start + 4 * count), start + 4 * count);
   for (let k = 0; k < 4; ++k) {
     const plane = bytes.subarray(start + k * count, start + (k + 1) * count);
-    for (let i = 0, to = start + k; i < count; ++i, to += 4) result[to] = plane[i];
+    for (let i = 0, to = start + k; i < count;) {
+      for (const end = Math.min(i + kMany, count); i < end; ++i, to += 4) result[to] = plane[i];
+      if (breath.isDue) await breath.take();
+    }
   }
   return result;
 }
 
-/** The bytes of one embedded file. */
-export async function embeddedBytes({ id, size, words }) {
+/** The bytes of one embedded file; `breath`: see breath.js. */
+export async function embeddedBytes({ id, size, words }, breath) {
   if (!globalThis.DecompressionStream)
     throw new Error("this browser is too old to unpack the file: use one of 2023 or later");
-  const packed = decodeBase64(document.getElementById(id).textContent);
+  const text = document.getElementById(id).textContent.trim();
+  const packed = await decodeBase64(
+    text,
+    (text.length / 4) * 3 - text.match(/=*$/)[0].length,
+    breath,
+  );
   const stream = new DecompressionStream("deflate-raw");
   const writer = stream.writable.getWriter();
   writer.write(packed).catch(() => {}); // the reader below tells
@@ -46,5 +66,5 @@ export async function embeddedBytes({ id, size, words }) {
     at += part.value.length;
   }
   if (at !== size) throw new Error("the page is not complete");
-  return inWords(bytes, words);
+  return inWords(bytes, words, breath);
 }

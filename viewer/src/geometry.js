@@ -91,17 +91,25 @@ export class Geometry {
       mime: images[imageOf(m)]?.mimeType,
     }));
     this.hasTextures = this.materials.some((m) => m.image !== undefined);
-    const pieces = this.gather(gltf, parts);
+  }
+
+  /** Reads all meshes; must be awaited before anything else. */
+  async read(gltf, parts, breath) {
+    const pieces = await this.gather(gltf, parts, breath);
     this.allocate(pieces);
-    for (const piece of pieces) this.fill(piece);
-    this.lines = this.linesOf(pieces);
+    for (const piece of pieces) {
+      this.fill(piece);
+      if (breath.isDue) await breath.take();
+    }
+    await this.addLines(pieces, breath);
     delete this.borders;
   }
 
   // What each part is made of; primitives of a part that share vertices do so here.
-  gather(gltf, parts) {
+  async gather(gltf, parts, breath) {
     const pieces = [];
     for (const part of parts) {
+      if (breath.isDue) await breath.take();
       const own = [];
       for (const source of gltf.json.meshes[part.mesh].primitives) {
         if ((source.mode ?? 4) !== 4 || source.attributes?.POSITION === undefined) continue;
@@ -132,6 +140,7 @@ export class Geometry {
     this.uv = this.hasTextures ? new Float32Array(2 * vertices) : null;
     this.lists = indices.map((count) => new Uint32Array(count));
     this.used = indices.map(() => 0);
+    this.spans = indices.map(() => []); // {part, start, count} in each list
     this.triangles = indices.reduce((a, b) => a + b, 0) / 3;
   }
 
@@ -139,8 +148,14 @@ export class Geometry {
     const list = this.lists[piece.material];
     let at = this.used[piece.material];
     for (let i = 0; i < piece.indices.length; ++i) list[at++] = piece.first + piece.indices[i];
+    const { length: count } = piece.indices;
+    this.spans[piece.material].push({ part: piece.part.index, start: at - count, count });
     this.used[piece.material] = at;
     if (piece.shared) return;
+    this.fillVertices(piece);
+  }
+
+  fillVertices(piece) {
     const { first, positions, normals, part } = piece;
     const count = positions.length / 3;
     this.position.set(positions, 3 * first);
@@ -181,20 +196,24 @@ export class Geometry {
 
   // Solids and foreign meshes: edges by angle. Walls and parts of buildings, whose faces have
   // vertices of their own: borders of faces, each once.
-  linesOf(pieces) {
+  async addLines(pieces, breath) {
     const lines = [];
+    this.lineSpans = [];
     for (let i = 0; i < pieces.length;) {
       let end = i + 1;
       while (end < pieces.length && pieces[end].part === pieces[i].part) ++end;
       const own = pieces.slice(i, end);
       const { part } = own[0];
+      const start = lines.length;
       const isOurs =
         part.kind !== "part" && part.kind !== "projectile" && part.wall?.extras.kind !== "solid";
       if (isOurs && own.every((piece) => piece.listKey !== null)) this.addBorders(own, lines);
       else if (part.kind !== "projectile") this.addSharp(own, lines);
+      this.lineSpans.push({ part: part.index, start, count: lines.length - start });
       i = end;
+      if (breath.isDue) await breath.take();
     }
-    return Uint32Array.from(lines);
+    this.lines = Uint32Array.from(lines);
   }
 
   addBorders(own, lines) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { Breath } from "./breath.js";
 import { Chart } from "./chart.js";
 import { element, fillRows, kToggles, modeChoices, toggleChoices } from "./choices.js";
 import { Colours } from "./colours.js";
@@ -7,6 +8,7 @@ import { readGltf } from "./gltf.js";
 import { readModel } from "./model.js";
 import { reportRows } from "./numbers.js";
 import { Player } from "./player.js";
+import { Quality } from "./quality.js";
 import { Selection } from "./selection.js";
 import { brokenTimes, chartsOf } from "./series.js";
 import { count, seconds } from "./text.js";
@@ -20,6 +22,7 @@ class Page {
     this.shown = { edges: true, wireframe: false, outer: true, graph: false, shadows: true };
     this.isDirty = true;
     this.world = new World($("view"), () => (this.isDirty = true));
+    this.quality = new Quality((level) => this.world.setLevel(level));
     this.player = new Player(() => this.timeChanged());
     this.charts = [];
     this.selection = new Selection(this.world, () => (this.isDirty = true));
@@ -76,13 +79,18 @@ class Page {
     await new Promise((done) => setTimeout(done));
     const start = performance.now();
     try {
-      const [main, companion] = await Promise.all(entry.files.map(embeddedBytes));
+      const breath = new Breath();
+      const [main, companion] = await Promise.all(
+        entry.files.map((file) => embeddedBytes(file, breath)),
+      );
       const unpacked = performance.now();
-      this.model = readModel(readGltf(main, companion), entry.report ?? null);
+      this.model = await readModel(readGltf(main, companion), entry.report ?? null, breath);
       const read = performance.now();
       this.world.show(this.model);
       this.fill(entry);
       this.say("");
+      document.documentElement.dataset.bytes = this.world.bytes();
+      await this.drawFirst();
       this.tell({
         unpack: unpacked - start,
         read: read - unpacked,
@@ -92,6 +100,18 @@ class Page {
       this.say(`${entry.name}: ${error.message}`, true);
       console.error(error);
     }
+  }
+
+  // On a slow machine first as when it moves: soon there, and later nothing waits for shaders.
+  async drawFirst() {
+    if (this.world.isSoftware) {
+      this.quality.begin(2);
+      this.draw();
+      await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+      this.quality.set(0);
+    }
+    this.draw();
+    document.documentElement.dataset.ready ??= performance.now().toFixed(0);
   }
 
   /** Measured times, in ms, for whoever looks at the page with tools. */
@@ -209,10 +229,12 @@ class Page {
     $(`mode-${this.mode.id}`).checked = true;
     $("key").replaceChildren(this.colours.key(this.mode.id));
     this.world.uniforms.showLoads.value = this.mode.id === "utilisation" ? 1 : 0;
+    this.world.setShown(this.shown);
     this.paint();
   }
 
   paint() {
+    this.world.isTinted = false;
     this.colours.paint(this.mode.id, this.player.time, (part, rgb, amount) =>
       this.world.paint(part, rgb, amount),
     );
@@ -222,7 +244,7 @@ class Page {
   explode(amount) {
     $("explode").value = amount;
     this.world.uniforms.explode.value = amount;
-    this.world.refreshShadows();
+    this.world.setShown(this.shown);
     this.isDirty = true;
   }
 
@@ -262,7 +284,10 @@ class Page {
     this.world.draw();
     const { dataset } = document.documentElement;
     dataset.frames = Number(dataset.frames ?? 0) + 1;
-    dataset.ready ??= performance.now().toFixed(0);
+    dataset.level = this.world.level;
+    const { triangles, calls } = this.world.renderer.info.render;
+    Object.assign(dataset, { triangles, calls });
+    dataset.first ??= performance.now().toFixed(0);
   }
 
   run() {
@@ -273,7 +298,9 @@ class Page {
       this.player.advance(Math.min((now - last) / 1000, 0.1));
       last = now;
       this.world.controls.update();
-      if (!this.isDirty || !this.model) return;
+      if (!this.model) return;
+      if (this.isDirty) this.quality.changed(start);
+      else if (!this.quality.rests(start)) return;
       this.draw();
       this.tell({ frame: performance.now() - start });
     };

@@ -4,6 +4,7 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { Geometry } from "./geometry.js";
 import { Motion } from "./motion.js";
+import { blocks, exposures, sorted } from "./order.js";
 import { compose, kIdentity, place, unplace } from "./pose.js";
 
 const kGround = -1;
@@ -248,16 +249,39 @@ function groundHeight(model) {
   return lowest < box.low[1] - 0.02 * height ? lowest : box.low[1];
 }
 
-export function readModel(gltf, report) {
+// What of each material is drawn when; edges in the order in which their parts move.
+async function order(model, breath) {
+  const { geometry, motion } = model;
+  const seen = await exposures(model, breath);
+  model.order = [];
+  for (const [m, material] of geometry.materials.entries()) {
+    if (!material.isInner) {
+      model.order.push(await blocks(model, m, breath));
+      continue;
+    }
+    const byTime = sorted(geometry.lists[m], geometry.spans[m], ({ part }) => seen[part]);
+    geometry.lists[m] = byTime.list;
+    model.order.push({ byTime });
+  }
+  model.lines = sorted(geometry.lines, geometry.lineSpans, ({ part }) => motion.start[part]);
+  geometry.lines = model.lines.list;
+}
+
+/** Everything the page shows; `breath` (breath.js) lets it answer while it is read. */
+export async function readModel(gltf, report, breath) {
   const { parts, walls } = new PartList(gltf.json);
   if (parts.length === 0) throw new Error("the file has no meshes");
+  await breath.take();
   const geometry = new Geometry(gltf, parts);
+  await geometry.read(gltf, parts, breath);
   for (const part of parts) {
     const box = geometry.boxes[part.index];
     if (part.kind === "part" && box)
       part.centroid = [0, 1, 2].map((k) => (box[k] + box[k + 3]) / 2);
   }
+  await breath.take();
   const motion = new Motion(gltf, parts);
+  await breath.take();
   const joints = readJoints(gltf, parts);
   const sunder = gltf.json.extras?.sunder ?? {};
   const scene = gltf.json.scenes?.[gltf.json.scene ?? 0]?.extras?.sunder ?? {};
@@ -278,5 +302,7 @@ export function readModel(gltf, report) {
     box: boxOf(parts, motion, geometry),
   };
   model.ground = groundHeight(model);
+  await breath.take();
+  await order(model, breath);
   return model;
 }

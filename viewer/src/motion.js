@@ -12,6 +12,16 @@ class Track {
     this.now = new Float64Array(width);
   }
 
+  /** When the values leave those given, s. */
+  leaves(rest) {
+    const { times, values, width, isStep } = this;
+    for (let k = 0; k < times.length; ++k)
+      for (let i = 0; i < width; ++i)
+        if (values[k * width + i] !== Math.fround(rest[i]))
+          return k === 0 ? -Infinity : times[isStep ? k : k - 1];
+    return Infinity;
+  }
+
   seek(time) {
     const { times } = this;
     const last = times.length - 1;
@@ -71,6 +81,7 @@ export class Motion {
     this.isLit = false;
     this.readTracks(gltf);
     for (const part of parts) this.local.set(part.pose, 8 * part.index);
+    this.start = this.starts();
     for (const part of parts) this.write(part);
     this.seek(0);
     this.times = this.keyTimes();
@@ -103,6 +114,18 @@ export class Motion {
   shareState(array) {
     array.set(this.state);
     this.state = array;
+  }
+
+  /** From when each part is no longer where it was, s; Infinity: it stays. */
+  starts() {
+    const starts = new Float64Array(this.parts.length).fill(Infinity);
+    for (const { index, pose, tracks } of this.movers) {
+      const rest = { translation: pose.subarray(0, 3), rotation: pose.subarray(4, 8) };
+      rest.scale = [pose[3], pose[3], pose[3]];
+      for (const [path, track] of Object.entries(tracks))
+        if (path !== "weights") starts[index] = Math.min(starts[index], track.leaves(rest[path]));
+    }
+    return starts;
   }
 
   track(gltf, sampler, path) {

@@ -14,7 +14,7 @@ function isJoint(thing) {
 export class Selection {
   /** `onChange` is called when the picture must be drawn anew. */
   constructor(world, onChange) {
-    Object.assign(this, { world, onChange, thing: null, clicks: 0 });
+    Object.assign(this, { world, onChange, thing: null });
     const canvas = $("view");
     let down = null;
     canvas.addEventListener("pointerdown", (event) => (down = event));
@@ -32,14 +32,12 @@ export class Selection {
     this.select(null);
   }
 
-  async click(event) {
+  click(event) {
     if (!this.model) return;
     const box = $("view").getBoundingClientRect();
     const x = event.clientX - box.left;
     const y = event.clientY - box.top;
-    const number = ++this.clicks;
-    const thing = this.jointAt(x, y) ?? (await this.world.picker.at(x, y));
-    if (number === this.clicks) this.select(thing);
+    this.select(this.jointAt(x, y) ?? this.world.picker.at(x, y));
   }
 
   jointAt(x, y) {

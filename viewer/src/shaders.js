@@ -20,17 +20,19 @@ uniform highp sampler2D motionMap;
 uniform highp sampler2D lookMap;
 uniform float explode;
 attribute float part;
-vec4 partTexel(highp sampler2D map, int texels, int k) {
-  int i = int(part + 0.5) * texels + k;
-  return texelFetch(map, ivec2(i % ${kTextureWidth}, i / ${kTextureWidth}), 0);
+vec4 partTexel(highp sampler2D map, uint texels, uint k) {
+  uint i = uint(part + 0.5) * texels + k;
+  return texelFetch(map, ivec2(i % ${kTextureWidth}u, i / ${kTextureWidth}u), 0);
 }
-vec4 motionTexel(int k) { return partTexel(motionMap, ${kMotionTexels}, k); }
-vec4 lookTexel(int k) { return partTexel(lookMap, ${kLookTexels}, k); }
+vec4 motionTexel(uint k) { return partTexel(motionMap, ${kMotionTexels}u, k); }
+vec4 lookTexel(uint k) { return partTexel(lookMap, ${kLookTexels}u, k); }
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
-vec3 placed(vec3 v) {
-  vec4 at = motionTexel(0);
-  return at.xyz + at.w * turned(motionTexel(1), v) + explode * lookTexel(2).yzw;
+vec3 placedBy(vec4 at, vec4 q, vec3 v) {
+  vec3 result = at.xyz + at.w * turned(q, v);
+  if (explode != 0.0) result += explode * lookTexel(2u).yzw;
+  return result;
 }
+vec3 placed(vec3 v) { return placedBy(motionTexel(0u), motionTexel(1u), v); }
 `;
 
 // The paper's colours: red for force, green for torque, yellow for both, blue for a failed joint.
@@ -51,26 +53,37 @@ function patched(shader, uniforms) {
       "#include <common>",
       `#include <common>
 ${kPlacing}
+uniform float showLoads;
 varying vec4 tint;
 varying vec3 along;
 flat varying vec4 load0, load1;
 flat varying float picked;`,
     )
-    .replace("#include <beginnormal_vertex>", "vec3 objectNormal = turned(motionTexel(1), normal);")
+    .replace(
+      "#include <beginnormal_vertex>",
+      "vec4 turn = motionTexel(1u);\nvec3 objectNormal = turned(turn, normal);",
+    )
     .replace(
       "#include <begin_vertex>",
-      `vec3 transformed = placed(position);
-vec4 form = lookTexel(1);
-tint = lookTexel(0);
+      `vec3 transformed = placedBy(motionTexel(0u), turn, position);
+vec4 form = lookTexel(1u);
+tint = lookTexel(0u);
 along = vec3(position.z, form.x, form.y);
-load0 = motionTexel(2);
-load1 = motionTexel(3);
+load0 = load1 = vec4(0.0);
+if (showLoads > 0.5) {
+  load0 = motionTexel(2u);
+  load1 = motionTexel(3u);
+}
 picked = form.z;`,
     );
   shader.fragmentShader = shader.fragmentShader
     .replace(
       "#include <common>",
-      `#include <common>
+      `// So that both sides may be shown without another shader.
+#ifndef DOUBLE_SIDED
+#define DOUBLE_SIDED
+#endif
+#include <common>
 uniform float showLoads;
 varying vec4 tint;
 varying vec3 along;
@@ -119,26 +132,6 @@ export function shadowMaterial(uniforms) {
   return material;
 }
 
-/** Writes the part's number + 1 as a colour. */
-export function pickMaterial(uniforms) {
-  return new ShaderMaterial({
-    glslVersion: GLSL3,
-    uniforms,
-    side: DoubleSide,
-    vertexShader: `${kPlacing.replace("attribute", "in")}
-flat out int number;
-void main() {
-  number = int(part + 0.5) + 1;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(placed(position), 1.0);
-}`,
-    fragmentShader: `flat in int number;
-out vec4 colour;
-void main() {
-  colour = vec4(number & 255, (number >> 8) & 255, (number >> 16) & 255, 255) / 255.0;
-}`,
-  });
-}
-
 /** Lines fade where a part is only a few pixels wide, and in what has not moved yet. */
 export function lineMaterial(uniforms) {
   return new ShaderMaterial({
@@ -152,9 +145,9 @@ out float strength;
 void main() {
   vec4 seen = modelViewMatrix * vec4(placed(position), 1.0);
   gl_Position = projectionMatrix * seen;
-  vec4 form = lookTexel(1);
-  float size = lookTexel(2).x * pixels / max(gl_Position.w, 1e-6);
-  bool moved = motionTexel(2).w > 0.5;
+  vec4 form = lookTexel(1u);
+  float size = lookTexel(2u).x * pixels / max(gl_Position.w, 1e-6);
+  bool moved = motionTexel(2u).w > 0.5;
   strength = max(moved ? 0.75 : form.w, form.z) * smoothstep(1.5, 14.0, size);
 }`,
     fragmentShader: `uniform vec3 ink;
@@ -184,7 +177,7 @@ in float value;      // utilisation; below 0: not known
 in float ended;      // s, when it broke
 uniform float time;
 out vec4 paint;
-vec3 placedBy(int index, vec3 v) {
+vec3 seenBy(int index, vec3 v) {
   int i = index * ${kMotionTexels};
   vec4 at = texelFetch(motionMap, ivec2(i % ${kTextureWidth}, i / ${kTextureWidth}), 0);
   ++i;
@@ -192,12 +185,12 @@ vec3 placedBy(int index, vec3 v) {
   return at.xyz + turned(q, v) * at.w;
 }
 void main() {
-  vec3 here = placedBy(int(part + 0.5), shared);
-  vec3 there = other < -0.5 ? facing : placedBy(int(other + 0.5), facing);
+  vec3 here = seenBy(int(part + 0.5), shared);
+  vec3 there = other < -0.5 ? facing : seenBy(int(other + 0.5), facing);
   bool broken = time >= ended || distance(here, there) > reach;
   vec3 good = mix(vec3(0.05, 0.45, 0.85), vec3(0.95, 0.35, 0.05), clamp(value, 0.0, 1.0));
   paint = broken ? vec4(0.9, 0.1, 0.1, 0.22) : vec4(good, 0.85);
-  if (motionTexel(0).w < 1e-6) paint.a = 0.0;
+  if (motionTexel(0u).w < 1e-6) paint.a = 0.0;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(placed(position), 1.0);
   gl_PointSize = broken ? 5.0 : 7.0;
 }`,
@@ -209,5 +202,48 @@ void main() {
   if (round > 0.5 && distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;
   colour = vec4(pow(paint.rgb, vec3(1.0 / 2.2)), paint.a);
 }`,
+  });
+}
+
+/**
+ * Surfaces for slow machines: lit in the vertices, by the sky and the sun without shadows. The
+ * colours of loads are left to surfaceMaterial(). `isStill`: vertices are where they belong.
+ */
+export function fastMaterial({ color, vertexColors, isStill }, uniforms) {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    defines: isStill ? { IS_STILL: "" } : {},
+    uniforms: { ...uniforms, base: { value: color } },
+    vertexColors,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+    vertexShader: `${kPlacing.replace("attribute", "in")}
+uniform vec3 base, skyLight, groundLight, sunLight, sunWay;
+uniform float painted;
+flat out vec3 shade;
+void main() {
+#ifdef IS_STILL
+  vec3 n = normal, at = position;
+#else
+  vec4 turn = motionTexel(1u);
+  vec3 n = turned(turn, normal), at = placedBy(motionTexel(0u), turn, position);
+#endif
+  gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
+  vec3 own = base;
+#ifdef USE_COLOR_ALPHA
+  own *= color.rgb;
+#endif
+  if (painted > 0.5) {
+    vec4 tint = lookTexel(0u);
+    own = mix(own, tint.rgb, tint.a);
+    own = mix(own, vec3(1.0, 0.45, 0.02), 0.75 * lookTexel(1u).z);
+  }
+  vec3 light = mix(groundLight, skyLight, 0.5 * n.y + 0.5) + sunLight * max(dot(n, sunWay), 0.0);
+  shade = pow(clamp(own * light, 0.0, 1.0), vec3(1.0 / 2.2));
+}`,
+    fragmentShader: `flat in vec3 shade;
+out vec4 colour;
+void main() { colour = vec4(shade, 1.0); }`,
   });
 }

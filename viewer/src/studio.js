@@ -68,6 +68,12 @@ export class Studio {
     this.shade = plane(new ShadowMaterial({ depthWrite: false }), -2);
     this.shade.receiveShadow = true;
     this.grid = plane(gridMaterial(), -1);
+    this.lights = {
+      skyLight: { value: new Color() },
+      groundLight: { value: new Color() },
+      sunLight: { value: new Color() },
+      sunWay: { value: new Vector3() },
+    };
     scene.add(this.sky, this.sun, this.sun.target, this.shade, this.grid);
   }
 
@@ -76,6 +82,11 @@ export class Studio {
     this.grid.material.uniforms.ink.value.set(isDark ? "#c8d4e6" : "#41506a");
     this.sky.intensity = isDark ? 1.5 : 1.7;
     this.shade.material.opacity = isDark ? 0.42 : 0.24;
+    const { lights, sky, sun } = this;
+    const share = 1 / Math.PI; // of the light from where it is seen
+    lights.skyLight.value.copy(sky.color).multiplyScalar(share * sky.intensity);
+    lights.groundLight.value.copy(sky.groundColor).multiplyScalar(share * sky.intensity);
+    lights.sunLight.value.copy(sun.color).multiplyScalar(share * sun.intensity);
   }
 
   /** Fits a model: `size` and `middle` of its box, height of the ground, and the camera's side. */
@@ -98,6 +109,7 @@ export class Studio {
     const from = new Vector3(side.x - 0.5 * side.z, height, side.z + 0.5 * side.x).normalize();
     sun.position.copy(middle).addScaledVector(from, 3 * size);
     sun.target.position.copy(middle);
+    this.lights.sunWay.value.copy(from);
     const bounds = { left: -size, right: size, top: size, bottom: -size };
     Object.assign(sun.shadow.camera, { ...bounds, near: size, far: 5.5 * size });
     sun.shadow.camera.updateProjectionMatrix();
@@ -106,6 +118,8 @@ export class Studio {
   }
 
   setShadows(isOn) {
-    this.sun.castShadow = this.shade.visible = isOn;
+    // Not castShadow, or all shaders would be made anew.
+    this.sun.shadow.intensity = isOn ? 1 : 0;
+    this.shade.visible = isOn;
   }
 }

@@ -2,21 +2,17 @@
 // The picture: light, ground, camera, and the meshes of a model with the two textures that move
 // and paint them.
 import {
+  Box3,
   BufferAttribute,
-  BufferGeometry,
   Color,
   DataTexture,
-  DoubleSide,
   FloatType,
-  FrontSide,
   LineSegments,
-  Mesh,
   NearestFilter,
   PCFShadowMap,
   PerspectiveCamera,
   RGBAFormat,
   Scene,
-  Sphere,
   SRGBColorSpace,
   Texture,
   Vector3,
@@ -26,17 +22,15 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Graph } from "./graph.js";
 import { kStateSize } from "./motion.js";
+import { countBefore } from "./order.js";
 import { Picker } from "./picker.js";
 import { place } from "./pose.js";
 import { Studio } from "./studio.js";
-import {
-  kLookTexels,
-  kMotionTexels,
-  kTextureWidth,
-  lineMaterial,
-  shadowMaterial,
-  surfaceMaterial,
-} from "./shaders.js";
+import { kLookTexels, kMotionTexels, kTextureWidth, lineMaterial } from "./shaders.js";
+import { Surfaces } from "./surfaces.js";
+
+const kShadowPause = 250; // ms between shadows where every frame is slow
+const kSmallest = 3; // of what lineMaterial takes for a size: less is not to be seen
 
 function floatTexture(texels) {
   const height = Math.max(1, Math.ceil(texels / kTextureWidth));
@@ -51,11 +45,22 @@ function floatTexture(texels) {
   return texture;
 }
 
+// True where the processor draws: it has better things to do than to smooth edges.
+function isSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return false;
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 export class World {
   constructor(canvas, onChange) {
+    this.isSoftware = isSoftware();
     this.renderer = new WebGLRenderer({
       canvas,
-      antialias: true,
+      antialias: !this.isSoftware,
       powerPreference: "high-performance",
     });
     this.renderer.shadowMap.enabled = true;
@@ -71,13 +76,15 @@ export class World {
       motionMap: { value: null },
       lookMap: { value: null },
       showLoads: { value: 0 },
+      painted: { value: 0 },
       explode: { value: 0 },
       pixels: { value: 800 },
       ink: { value: new Color() },
       time: { value: 0 },
     };
     this.studio = new Studio(this.scene);
-    this.meshes = [];
+    Object.assign(this.uniforms, this.studio.lights);
+    this.level = 0;
     this.picker = new Picker(this);
     const dark = matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", () => (this.dress(dark.matches), onChange()));
@@ -93,18 +100,20 @@ export class World {
   show(model) {
     this.clear();
     this.model = model;
+    this.picked = new Set();
     const count = model.parts.length;
     this.motionMap = this.uniforms.motionMap.value = floatTexture(count * kMotionTexels);
     this.lookMap = this.uniforms.lookMap.value = floatTexture(count * kLookTexels);
     model.motion.shareState(this.motionMap.image.data);
     this.look = this.lookMap.image.data;
     for (const part of model.parts) this.writeForm(part);
-    this.attributes(model.geometry);
-    this.sphere = new Sphere(new Vector3(), Infinity);
-    model.geometry.lists.forEach(
-      (list, i) => list.length > 0 && this.addSurface(list, model.geometry.materials[i]),
-    );
+    this.surfaces = new Surfaces(model, this.uniforms, (source) => this.textureOf(source));
+    this.scene.add(...this.surfaces.meshes);
     this.addLines(model.geometry.lines);
+    this.widest = model.geometry.widths.reduce(
+      (a, b, i) => (model.motion.start[i] === Infinity ? Math.max(a, b) : a),
+      0,
+    );
     this.graph = new Graph(model, this.uniforms);
     this.scene.add(this.graph.object);
     this.fit();
@@ -129,41 +138,6 @@ export class World {
     this.look.set(form, at + 4);
   }
 
-  attributes(geometry) {
-    this.shared = {
-      position: new BufferAttribute(geometry.position, 3),
-      normal: new BufferAttribute(geometry.normal, 4, true),
-      part: new BufferAttribute(geometry.part, 1),
-    };
-    if (geometry.colour) this.shared.color = new BufferAttribute(geometry.colour, 4, true);
-    if (geometry.uv) this.shared.uv = new BufferAttribute(geometry.uv, 2);
-  }
-
-  geometryOf(list) {
-    const geometry = new BufferGeometry();
-    for (const [name, attribute] of Object.entries(this.shared))
-      geometry.setAttribute(name, attribute);
-    geometry.setIndex(new BufferAttribute(list, 1));
-    geometry.boundingSphere = this.sphere; // or three.js would look at every vertex
-    return geometry;
-  }
-
-  addSurface(list, source) {
-    const options = {
-      color: new Color(...source.colour),
-      vertexColors: Boolean(this.shared.color),
-      map: this.textureOf(source),
-    };
-    const mesh = new Mesh(this.geometryOf(list), surfaceMaterial(options, this.uniforms));
-    mesh.customDepthMaterial = shadowMaterial(this.uniforms);
-    mesh.castShadow = mesh.receiveShadow = true;
-    mesh.frustumCulled = false;
-    mesh.userData = { isInner: source.isInner, isDouble: source.isDouble };
-    mesh.layers.enable(1);
-    this.meshes.push(mesh);
-    this.scene.add(mesh);
-  }
-
   textureOf(source) {
     if (source.image === undefined) return null;
     const texture = new Texture();
@@ -184,14 +158,17 @@ export class World {
   }
 
   addLines(list) {
-    this.lines = new LineSegments(this.geometryOf(list), lineMaterial(this.uniforms));
+    const index = new BufferAttribute(list, 1);
+    const geometry = this.surfaces.geometryOf(index);
+    this.lines = new LineSegments(geometry, lineMaterial(this.uniforms));
     this.lines.frustumCulled = false;
     this.lines.renderOrder = 1;
     this.scene.add(this.lines);
   }
 
   clear() {
-    for (const object of [...this.meshes, this.lines, this.graph?.object]) {
+    this.surfaces?.dispose();
+    for (const object of [this.lines, this.graph?.object]) {
       if (!object) continue;
       object.removeFromParent();
       object.traverse(
@@ -203,7 +180,6 @@ export class World {
       );
     }
     (this.motionMap?.dispose(), this.lookMap?.dispose());
-    this.meshes = [];
     this.uniforms.explode.value = 0;
   }
 
@@ -260,11 +236,27 @@ export class World {
   }
 
   resize(width, height) {
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
+    Object.assign(this, { width, height });
+    this.setPixels();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.uniforms.pixels.value = height / Math.tan((this.camera.fov * Math.PI) / 360);
+  }
+
+  // Where the processor draws, triangles cost, not pixels, and another size makes the page wait.
+  setPixels() {
+    const whole = Math.min(devicePixelRatio, 2);
+    const isCoarse = this.level > 1 && !this.isSoftware;
+    this.renderer.setPixelRatio(isCoarse ? Math.min(whole, this.level > 2 ? 0.6 : 1) : whole);
+    this.renderer.setSize(this.width, this.height, false);
+  }
+
+  /** With how little a frame is drawn: see quality.js. */
+  setLevel(level) {
+    this.level = level;
+    if (!this.isSoftware) this.setPixels();
+    this.setShown(this.shown);
+    this.refreshShadows();
   }
 
   /** Colour of a part; amount 0 leaves its material. */
@@ -274,36 +266,68 @@ export class World {
       (this.look[at + 1] = rgb[1]),
       (this.look[at + 2] = rgb[2]),
       (this.look[at + 3] = amount));
+    this.isTinted ||= amount > 0;
     this.lookMap.needsUpdate = true;
   }
 
   mark(part, isPicked) {
     this.look[part.index * 4 * kLookTexels + 6] = isPicked ? 1 : 0;
+    if (isPicked) this.picked.add(part);
+    else this.picked.delete(part);
     this.lookMap.needsUpdate = true;
   }
 
   moved(time) {
     this.uniforms.time.value = time;
     this.motionMap.needsUpdate = true;
+    this.surfaces.seek(time);
     this.refreshShadows();
   }
 
+  /** Shadows are drawn anew with the next frame, on slow machines not with each. */
   refreshShadows() {
+    this.hasOldShadows = true;
+  }
+
+  renewShadows() {
+    const now = performance.now();
+    const isLate = now - (this.shadowTime ?? 0) > kShadowPause;
+    if (
+      !this.shown.shadows ||
+      !this.hasOldShadows ||
+      this.level > 1 ||
+      (this.level === 1 && !isLate)
+    )
+      return;
+    this.hasOldShadows = false;
+    this.shadowTime = now;
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  setShown({ edges, wireframe, outer, graph, shadows }) {
-    for (const mesh of this.meshes) {
-      const { isInner, isDouble } = mesh.userData;
-      mesh.visible = outer || isInner;
-      mesh.material.wireframe = wireframe;
-      mesh.material.side = isDouble || !outer || wireframe ? DoubleSide : FrontSide;
-      mesh.material.needsUpdate = true;
-    }
-    this.lines.visible = edges && !wireframe;
+  setShown(shown) {
+    this.shown = shown;
+    const { wireframe, outer, graph, shadows } = shown;
+    const isExploded = this.uniforms.explode.value > 0;
+    const isFast = this.level > 1 && this.uniforms.showLoads.value === 0;
+    this.surfaces.setShown({ wireframe, outer, isExploded, isFast });
     this.graph.object.visible = graph;
-    this.studio.setShadows(shadows);
+    this.studio.setShadows(shadows && this.level < 2);
     this.refreshShadows();
+  }
+
+  // Edges of what has not moved are faint, all are where parts are small (lineMaterial).
+  showLines() {
+    const { model, lines, shown, uniforms, camera } = this;
+    const largest = this.widest * uniforms.pixels.value;
+    const distance = new Box3(
+      new Vector3(...model.box.low),
+      new Vector3(...model.box.high),
+    ).distanceToPoint(camera.position);
+    const isSmall = uniforms.explode.value === 0 && largest < kSmallest * distance;
+    const isMoving = countBefore(model.lines, uniforms.time.value);
+    lines.visible = shown.edges && !shown.wireframe && this.level < 2;
+    const hasFaint = this.level === 0 && !isSmall;
+    lines.geometry.setDrawRange(0, hasFaint ? Infinity : isMoving);
   }
 
   /** Where a joint is in the canvas, CSS pixels; null: behind the camera, or its parts are gone. */
@@ -326,7 +350,18 @@ export class World {
     return { x: ((seen.x + 1) / 2) * clientWidth, y: ((1 - seen.y) / 2) * clientHeight };
   }
 
+  /** Of vertices, lists and textures on the graphics card, shadows aside. */
+  bytes() {
+    const lists = [...this.model.geometry.lists, this.model.geometry.lines];
+    const shared = Object.values(this.surfaces.shared).map(({ array }) => array);
+    const textures = [this.motionMap, this.lookMap].map(({ image }) => image.data);
+    return [...lists, ...shared, ...textures].reduce((sum, { byteLength }) => sum + byteLength, 0);
+  }
+
   draw() {
+    this.showLines();
+    this.renewShadows();
+    this.uniforms.painted.value = this.isTinted || this.picked.size > 0 ? 1 : 0;
     this.renderer.render(this.scene, this.camera);
   }
 }
