@@ -49,7 +49,7 @@ struct Building {
   explicit Building(const Frame& of, std::mt19937& random) : frame(of), solver(of) {
     solver.break_joints(some_of(random() % 12, frame.joints.size(), random));
     const auto part = static_cast<std::uint32_t>(random() % frame.part_count());
-    solver.solve({.live = live, .contacts = {{part, {3, 4, 5}, {2e4, -3e4, 1e4}}}});
+    solver.solve({.contacts = {{part, {3, 4, 5}, {2e4, -3e4, 1e4}}}, .live = live});
   }
   Ways ways(const Numbers& parts) const { return solver.ways_of_displacements(live, parts); }
 
