@@ -307,12 +307,23 @@ Matrix12 stiffness_of(const BeamElement& e) {
 }
 
 Twelve fixed_end_of(const BeamElement& e, const BeamLoad& load) {
-  const EndForces local = held_ends(e, load, about_z(e), about_y(e), twist_of(e));
-  const Vec3 force_a = e.axes * local.force_a, force_b = e.axes * local.force_b;
-  const Vec3 moment_a = e.axes * local.moment_a + cross(e.arm_a, force_a);
-  const Vec3 moment_b = e.axes * local.moment_b + cross(e.arm_b, force_b);
-  return {force_a.x, force_a.y, force_a.z, moment_a.x, moment_a.y, moment_a.z,
-          force_b.x, force_b.y, force_b.z, moment_b.x, moment_b.y, moment_b.z};
+  Twelve result{};
+  fixed_ends_of(e, {&load, 1}, {&result, 1});
+  return result;
+}
+
+void fixed_ends_of(const BeamElement& e, std::span<const BeamLoad> loads,
+                   std::span<Twelve> results) {
+  const Bending z = about_z(e), y = about_y(e);
+  const Twist twist = twist_of(e);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const EndForces local = held_ends(e, loads[i], z, y, twist);
+    const Vec3 force_a = e.axes * local.force_a, force_b = e.axes * local.force_b;
+    const Vec3 moment_a = e.axes * local.moment_a + cross(e.arm_a, force_a);
+    const Vec3 moment_b = e.axes * local.moment_b + cross(e.arm_b, force_b);
+    results[i] = {force_a.x, force_a.y, force_a.z, moment_a.x, moment_a.y, moment_a.z,
+                  force_b.x, force_b.y, force_b.z, moment_b.x, moment_b.y, moment_b.z};
+  }
 }
 
 Matrix12 geometric_stiffness_of(const BeamElement& e, double axial) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "meshing/vec.hpp"
@@ -59,6 +60,10 @@ struct BeamLoad {
 Matrix12 stiffness_of(const BeamElement& element);
 /// Forces of the nodes on an element whose nodes are held: what balances its load.
 Twelve fixed_end_of(const BeamElement& element, const BeamLoad& load);
+/// Of several loads, each alone, into as many results: the same numbers, but what they share of the
+/// element is made once.
+void fixed_ends_of(const BeamElement& element, std::span<const BeamLoad> loads,
+                   std::span<Twelve> results);
 /// Geometric stiffness for an axial force (tension positive), consistent with the cubic shapes that
 /// shear and springs leave; arms turn with their nodes under that force.
 Matrix12 geometric_stiffness_of(const BeamElement& element, double axial);

@@ -41,7 +41,6 @@ void ElasticMotion::end_divisions(std::span<const MemberDivision> divisions) {
   const auto make_room = [&](auto& list) { list.insert(list.begin() + first, count, {}); };
   make_room(places_);
   make_room(offsets_);
-  if (!ways_.empty()) make_room(ways_);
   link_again();
   const std::size_t first_new = bodies_.pieces().size();
   for (const MemberDivision& division : divisions) {

@@ -135,13 +135,21 @@ double ElasticMotion::potential() const {
   return standing_.potential() + scene_.simulation.gravity * moment;
 }
 
-/// What no longer hangs on the ground moves, from where it was in the frame and as it did there.
-/// Returns its parts, and in `lowered` their potential on the way that they had gone, J.
-std::vector<std::uint32_t> ElasticMotion::release_loose(double& lowered) {
-  std::vector<std::uint32_t> released;
-  for (SupportGraph::Island& island : graph_.break_bonds(broken_).islands) {
+/// What no longer hangs on the ground, of what has stood.
+std::vector<SupportGraph::Island> ElasticMotion::loose_from_standing() {
+  std::vector<SupportGraph::Island> islands = graph_.break_bonds(broken_).islands;
+  for (SupportGraph::Island& island : islands)
     std::erase_if(island.chunks, [&](std::uint32_t part) { return !bodies_.stands(part); });
-    if (island.chunks.empty()) continue;
+  std::erase_if(islands, [](const SupportGraph::Island& island) { return island.chunks.empty(); });
+  return islands;
+}
+
+/// It moves, from where it was in the frame and as it did there. Returns its parts, and in
+/// `lowered` their potential on the way that they had gone, J.
+std::vector<std::uint32_t> ElasticMotion::release_loose(std::vector<SupportGraph::Island> islands,
+                                                        double& lowered) {
+  std::vector<std::uint32_t> released;
+  for (SupportGraph::Island& island : islands) {
     BodyParams body = bodies_.body_of(island.chunks);
     take_frames_place(body, island.chunks);
     take_frames_motion(body, island.chunks);
@@ -171,9 +179,10 @@ bool ElasticMotion::settle_breaks() {
   const double before = is_struck ? energy() : world_.kinetic_energy();
   if (is_struck) standing_.wake();
   const std::size_t first_new = bodies_.pieces().size();
-  if (is_struck) note_places();
+  std::vector<SupportGraph::Island> islands = loose_from_standing();
+  const Ways ways = is_struck ? note_ways(of_standing, islands) : Ways{};
   double lowered = 0;
-  const std::vector<std::uint32_t> released = release_loose(lowered);
+  const std::vector<std::uint32_t> released = release_loose(std::move(islands), lowered);
   for (const std::uint32_t piece : in_pieces) {
     auto groups = links_.components(bodies_.pieces()[piece].parts);
     if (groups.size() > 1) bodies_.split(piece, std::move(groups));
@@ -185,7 +194,7 @@ bool ElasticMotion::settle_breaks() {
       return !bodies_.stands(joint.a) || (joint.b != kNoPart && !bodies_.stands(joint.b));
     });
     standing_.take_out(of_standing, released);
-    keep_places();
+    keep_places(ways);
     if (standing_.in_time()) stop_turning(broken_);
     standing_.carry_on();
   }

@@ -86,7 +86,9 @@ class ElasticMotion final : public FrameMotion {
   void part_bodies();
   bool settle_hinges();
   void stop_turning(std::span<const std::uint32_t> joints);
-  std::vector<std::uint32_t> release_loose(double& lowered);
+  std::vector<SupportGraph::Island> loose_from_standing();
+  std::vector<std::uint32_t> release_loose(std::vector<SupportGraph::Island> islands,
+                                           double& lowered);
 
   // elastic_division.cpp: members in two parts.
   void divide_touch(const MemberDivision& division);
@@ -116,8 +118,14 @@ class ElasticMotion final : public FrameMotion {
   Vec3 of_solid(std::uint32_t part, const FrameSolver::MassWay& way) const;
   void take_frames_place(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
   void take_frames_motion(BodyParams& body, const std::vector<std::uint32_t>& parts) const;
-  void note_places();
-  void keep_places();
+  struct Ways {
+    std::vector<std::uint32_t> parts;  ///< that a break may change
+    std::vector<FrameSolver::MassWay> ways;
+  };
+  void note_places(std::span<const std::uint32_t> parts,
+                   std::span<const FrameSolver::MassWay> ways);
+  Ways note_ways(std::vector<std::uint32_t> joints, std::span<const SupportGraph::Island> leaving);
+  void keep_places(const Ways& before);
 
   const CollapseScene& scene_;
   const Frame& frame_;
@@ -140,12 +148,11 @@ class ElasticMotion final : public FrameMotion {
     Vec3 way, velocity;    ///< from where it stood unbent, m; m/s
     Vec3 turned, turning;  ///< first moments about the centre, kg m² and kg m²/s
   };
-  std::vector<Place> places_;  ///< by part, when breaks were settled last
+  std::vector<Place> places_;  ///< by part, when a break last changed what bears it
   /// By part: what its place is beyond what the frame says. A part that is borne in another way
   /// after a break has not moved.
   std::vector<Vec3> offsets_;
-  std::vector<FrameSolver::MassWay> ways_;  ///< of places_
-  double now_ = 0, noted_ = -1;             ///< places_, s
+  double now_ = 0, noted_ = -1;  ///< places_, s
   double since_step_ = 0, given_ = 0, fracture_ = 0;
   double undivided_ = 0;  ///< energy of the standing frame when divisions began, J
   std::uint64_t skipped_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How parts of the ringing frame move, and with what motion they leave it.
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "sim/elastic_motion.hpp"
@@ -100,32 +101,56 @@ Vec3 ElasticMotion::of_solid(std::uint32_t part, const FrameSolver::MassWay& way
   return (bodies_.own_mass_of(part) / solid.mass) * (own * (inverse(whole) * way.turned));
 }
 
-/// Before the frame loses anything. In balance at any time it is a wreck between two breaks of a
-/// cascade, displaced by kilometres: places are those before the first one.
-void ElasticMotion::note_places() {
-  ways_ = standing_.ways();
-  if (!standing_.in_time() && std::exchange(noted_, now_) == now_) return;
+void ElasticMotion::note_places(std::span<const std::uint32_t> parts,
+                                std::span<const FrameSolver::MassWay> ways) {
   const std::vector<FrameSolver::MassWay> speeds =
-      standing_.in_time() ? standing_.speeds() : std::vector<FrameSolver::MassWay>(ways_.size());
-  for (std::uint32_t part = 0; part < ways_.size(); ++part) {
-    if (!bodies_.stands(part) || !(ways_[part].mass > 0)) continue;
-    places_[part].way = (1 / ways_[part].mass) * ways_[part].moved + offsets_[part];
-    places_[part].turned = of_solid(part, ways_[part]);
-    if (!(speeds[part].mass > 0)) continue;
-    places_[part].velocity = (1 / speeds[part].mass) * speeds[part].moved;
-    places_[part].turning = of_solid(part, speeds[part]);
+      standing_.in_time() ? standing_.speeds(parts)
+                          : std::vector<FrameSolver::MassWay>(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::uint32_t part = parts[i];
+    if (!bodies_.stands(part) || !(ways[i].mass > 0)) continue;
+    places_[part].way = (1 / ways[i].mass) * ways[i].moved + offsets_[part];
+    places_[part].turned = of_solid(part, ways[i]);
+    if (!(speeds[i].mass > 0)) continue;
+    places_[part].velocity = (1 / speeds[i].mass) * speeds[i].moved;
+    places_[part].turning = of_solid(part, speeds[i]);
   }
 }
 
+/// Before the frame loses these joints of its own and the parts that leave. In balance at any time
+/// it is a wreck between two breaks of a cascade, displaced by kilometres: places are those before
+/// the first one.
+ElasticMotion::Ways ElasticMotion::note_ways(std::vector<std::uint32_t> joints,
+                                             std::span<const SupportGraph::Island> leaving) {
+  std::vector<std::uint32_t> parts;
+  for (const SupportGraph::Island& island : leaving)
+    for (const std::uint32_t part : island.chunks) {
+      parts.push_back(part);
+      std::ranges::copy_if(links_.joints_of(part), std::back_inserter(joints),
+                           [this](std::uint32_t j) { return links_.intact(j); });
+    }
+  Ways before{standing_.parts_at(joints, parts), {}};
+  before.ways = standing_.ways(before.parts);
+  if (standing_.in_time()) {
+    note_places(before.parts, before.ways);
+  } else if (std::exchange(noted_, now_) != now_) {
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t part = 0; part < places_.size(); ++part)
+      if (bodies_.stands(part)) all.push_back(part);
+    note_places(all, standing_.ways(all));
+  }
+  return before;
+}
+
 /// What still stands is where it was, whatever bears it now.
-void ElasticMotion::keep_places() {
-  const std::vector<FrameSolver::MassWay> now = standing_.ways();
+void ElasticMotion::keep_places(const Ways& before) {
+  const std::vector<FrameSolver::MassWay> now = standing_.ways(before.parts);
   const auto way = [](const FrameSolver::MassWay& w) {
     return w.mass > 0 ? (1 / w.mass) * w.moved : Vec3{};
   };
-  for (std::uint32_t part = 0; part < now.size(); ++part) {
-    if (bodies_.stands(part)) offsets_[part] = offsets_[part] + (way(ways_[part]) - way(now[part]));
-  }
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (const std::uint32_t part = before.parts[i]; bodies_.stands(part))
+      offsets_[part] = offsets_[part] + (way(before.ways[i]) - way(now[i]));
 }
 
 }  // namespace sunder

@@ -361,15 +361,18 @@ JointLoad FrameSolver::joint_load(std::uint32_t j) const {
             into(joint.axes, load.torque)};
   }
   const double side = joint.end_a == 1 ? 1 : -1;
-  return {side * into(joint.axes, reaction(j)), side * into(joint.axes, reaction_moment(j))};
+  const JointLoad sum = impl_->through(j);
+  return {side * into(joint.axes, sum.force), side * into(joint.axes, sum.torque)};
 }
 
-Vec3 FrameSolver::Impl::through(std::uint32_t j, std::size_t first) const {
-  std::vector<std::uint32_t> ends;
-  links.ends_beyond(j, ends);
-  Vec3 sum;
-  for (const std::uint32_t end : ends)
-    if (members[end / 2].present()) sum = sum + three(forces[end / 2], 6 * (end % 2) + first);
+JointLoad FrameSolver::Impl::through(std::uint32_t j) {
+  links.ends_beyond(j, ends_through);
+  JointLoad sum;
+  for (const std::uint32_t end : ends_through) {
+    if (!members[end / 2].present()) continue;
+    sum.force = sum.force + three(forces[end / 2], 6 * (end % 2));
+    sum.torque = sum.torque + three(forces[end / 2], 6 * (end % 2) + 3);
+  }
   return sum;
 }
 
@@ -383,11 +386,11 @@ Vec3 FrameSolver::rotation(std::uint32_t frame_node) const {
 }
 
 Vec3 FrameSolver::reaction(std::uint32_t joint) const {
-  return impl_->through(joint, 0);
+  return impl_->through(joint).force;
 }
 
 Vec3 FrameSolver::reaction_moment(std::uint32_t joint) const {
-  return impl_->through(joint, 3);
+  return impl_->through(joint).torque;
 }
 
 double FrameSolver::axial(std::uint32_t member) const {

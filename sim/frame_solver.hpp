@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/block_factor.hpp"
 #include "sim/beam_element.hpp"
+#include "sim/block_factor.hpp"
 #include "sim/frame.hpp"
 #include "sim/member_span.hpp"
 #include "sim/panel_element.hpp"
@@ -161,8 +161,17 @@ class FrameSolver {
     Vec3 turned;      ///< first moment of mass × way about the centre, kg m²
     SymMat3 inertia;  ///< of that mass, lines and points, about the centre, kg m²
   };
-  std::vector<MassWay> ways_of_displacements(const std::vector<double>& live) const;  ///< by part
-  std::vector<MassWay> ways_of(std::span<const double> velocities) const;  ///< without live loads
+  /// Of these parts alone, in their order. O(their joints, times a logarithm).
+  std::vector<MassWay> ways_of_displacements(const std::vector<double>& live,
+                                             std::span<const std::uint32_t> parts) const;
+  std::vector<MassWay> ways_of(std::span<const double> velocities,  ///< without live loads
+                               std::span<const std::uint32_t> parts) const;
+  /// Σ moved.y of all parts by the displacements, kg m.
+  double height_of_masses(const std::vector<double>& live) const;
+  /// Parts whose ways may change as these joints break and these parts are removed with all of
+  /// theirs (give those joints too); asked before. Ascending, each once.
+  std::vector<std::uint32_t> parts_at(std::span<const std::uint32_t> joints,
+                                      std::span<const std::uint32_t> parts) const;
   FactorCounts counts() const;
 
   // For dynamics: vectors of six numbers per free node (`freedoms`), in an order of their own.

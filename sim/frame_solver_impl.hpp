@@ -156,11 +156,21 @@ struct FrameSolver::Impl {
   struct LineWay {
     Vec3 moved, turned;
   };
+  void held_under_each(std::uint32_t m, std::span<const BeamLoad> loads,
+                       std::span<Twelve> held_nodes) const;
+  Twelve elastic_motion(std::uint32_t m, std::span<const double> motion, bool bends) const;
   LineWay line_way(std::uint32_t m, const Twelve& motion) const;
-  template <class Held>
-  static std::array<Twelve, 3> by_axis(const Held& held_nodes);
+  Vec3 point_way(std::uint32_t m, Vec3 point, const Twelve& motion) const;
+  std::vector<std::uint32_t> members_under(std::span<const std::uint32_t> parts) const;
+  template <class Visit>
+  void each_share(const PlateSupport& plate, const std::vector<double>& live,
+                  const Visit& visit) const;
   std::vector<MassWay> mass_ways(std::span<const double> motion, const std::vector<double>& live,
-                                 bool bends) const;
+                                 bool bends, std::span<const std::uint32_t> parts) const;
+  double line_height(std::uint32_t m, const Twelve& motion);
+  double height(const std::vector<double>& live);
+  std::vector<std::uint32_t> parts_at(std::span<const std::uint32_t> joints,
+                                      std::span<const std::uint32_t> going) const;
 
   // frame_panels.cpp: slabs and walls that are elastic.
   void add_panel_edges(FrameLinks::Edges& edges) const;
@@ -216,8 +226,7 @@ struct FrameSolver::Impl {
   std::vector<PointLoad> points_of(std::uint32_t m, bool with_contacts);
   Vec3 pull_at(std::uint32_t m, Vec3 point) const;
   bool find_span(std::uint32_t m, MemberSpan& span);
-  Six motion_within(std::uint32_t m, double along, std::span<const double> motion,
-                    OnMember loads);
+  Six motion_within(std::uint32_t m, double along, std::span<const double> motion, OnMember loads);
 
   // frame_solver.cpp: breaking, and from displacements to forces.
   void break_joints(std::span<const std::uint32_t> joints);
@@ -232,8 +241,7 @@ struct FrameSolver::Impl {
   void iterate_second_order();
   Vec3 displacement(std::uint32_t frame_node) const;
   double axial(std::uint32_t m) const;
-  Vec3 through(std::uint32_t joint,
-               std::size_t first) const;  ///< force (0) or moment (3) on part a
+  JointLoad through(std::uint32_t joint);  ///< on part a, world
   template <class Apply>
   void sum_members(std::span<const double> motion, std::span<double> result,
                    const Apply& apply) const;
@@ -249,6 +257,8 @@ struct FrameSolver::Impl {
   std::vector<BlockChange> in_mass;                  ///< per member
   std::vector<Bent> bent;                            ///< by when they first had a hinge
   std::vector<std::uint32_t> bent_of;                ///< per member; kNone: it has none
+  std::vector<Twelve> height_rows;                   ///< of a metre's mass on a member, if known
+  std::vector<std::uint8_t> height_known;            ///< per member, since it was renewed
   std::vector<double> axial_in_factor;               ///< N, of the geometric stiffness
   std::vector<PlateSupport> plates;
   std::vector<std::vector<std::uint32_t>> plates_on;  ///< per member
@@ -279,7 +289,8 @@ struct FrameSolver::Impl {
   bool points_known = false;
   std::vector<double> f, u;
   std::vector<double> stiff;         ///< stiffness × u
-  std::vector<double> rest, before;  ///< of the refinement
+  std::vector<double> rest, before;         ///< of the refinement
+  std::vector<std::uint32_t> ends_through;  ///< of through()
 };
 
 }  // namespace sunder

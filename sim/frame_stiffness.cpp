@@ -156,6 +156,8 @@ void FrameSolver::Impl::make_members() {
   point_masses.resize(count);
   in_factor.assign(count, {kNone, kNone, {}});
   bent_of.assign(count, kNone);
+  height_rows.resize(count);
+  height_known.assign(count, 0);
   axial_in_factor.assign(count, 0);
   double stretch = 0, bend = 0;
   for (std::uint32_t m = 0; m < members.size(); ++m) {
@@ -206,6 +208,7 @@ FrameSolver::Impl::Role FrameSolver::Impl::role_of(std::uint32_t m, int& held_en
 
 void FrameSolver::Impl::renew(std::uint32_t m) {
   Member& member = members[m];
+  height_known[m] = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::uint32_t node = links.end(m, static_cast<int>(i)).node;
     for (const std::uint32_t n : {member.node[i], node})

@@ -16,54 +16,78 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double kRankShare = 1e-14;  // of a change, scaled to a unit diagonal: nothing below it
-constexpr double kSafePivot = 1e-5;   // what stays of a direction's stiffness: else refactor
+constexpr double kRankShare = 1e-14;   // of a change, scaled to a unit diagonal: nothing below it
+constexpr std::size_t kMostNodes = 8;  // of changes that are decomposed together
+constexpr double kSafePivot = 1e-5;    // what stays of a direction's stiffness: else refactor
 
-/// One column of U: its numbers at the two nodes, and whether it is added or taken.
+/// One column of U: its numbers at the nodes of its patch, and whether it is added or taken.
 struct Root {
-  std::array<double, 12> at;
+  std::vector<double> at;
   double sign;
 };
 
-std::array<double, 12> scale_of(const Matrix12& delta, int size) {
-  std::array<double, 12> scale{};
-  double most = 0;
-  for (int i = 0; i < size; ++i)
-    for (int j = 0; j < size; ++j) most = std::max(most, std::abs(delta(i, j)));
+/// Changes that are decomposed together, the nodes that they are of, and their columns.
+struct Patch {
+  std::vector<const BlockChange*> changes;
+  std::vector<std::uint32_t> nodes;
+  std::vector<Root> roots = {};
+};
+
+std::vector<double> scale_of(const Matrix& delta) {
+  const auto size = static_cast<std::size_t>(delta.rows());
+  std::vector<double> scale(size, 0.0);
+  const double most = delta.cwiseAbs().maxCoeff();
   if (most == 0) return scale;
-  for (int i = 0; i < size; ++i) {
-    double row = 0;
-    for (int j = 0; j < size; ++j) row = std::max(row, std::abs(delta(i, j)));
-    scale[static_cast<std::size_t>(i)] =
-        std::sqrt(std::max(std::abs(delta(i, i)), row * (row / most)));
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto r = static_cast<Eigen::Index>(i);
+    const double row = delta.row(r).cwiseAbs().maxCoeff();
+    scale[i] = std::sqrt(std::max(std::abs(delta(r, r)), row * (row / most)));
   }
   return scale;
 }
 
 /// Columns whose squares, with their signs, sum up to the change: by its eigenvectors after scaling
 /// to a unit diagonal, so that stiff and soft freedoms keep the same digits.
-void append_roots(const BlockChange& change, std::vector<Root>& roots) {
-  const int size = change.a == change.b ? 6 : 12;
-  const std::array<double, 12> scale = scale_of(change.delta, size);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 12, 12> scaled(size, size);
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) {
+std::vector<Root> roots_of(const Matrix& delta) {
+  std::vector<Root> roots;
+  const auto size = static_cast<std::size_t>(delta.rows());
+  const std::vector<double> scale = scale_of(delta);
+  Matrix scaled = delta;
+  for (Eigen::Index i = 0; i < delta.rows(); ++i) {
+    for (Eigen::Index j = 0; j < delta.cols(); ++j) {
       const double by = scale[static_cast<std::size_t>(i)] * scale[static_cast<std::size_t>(j)];
-      scaled(i, j) = by > 0 ? change.delta(i, j) / by : 0;
+      scaled(i, j) = by > 0 ? delta(i, j) / by : 0;
     }
   }
-  const Eigen::SelfAdjointEigenSolver<decltype(scaled)> solver(scaled);
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(scaled);
   const auto& values = solver.eigenvalues();
   const double most = values.cwiseAbs().maxCoeff();
-  for (int k = 0; k < size; ++k) {
+  for (Eigen::Index k = 0; k < delta.rows(); ++k) {
     if (!(std::abs(values[k]) > kRankShare * most)) continue;
-    Root root{{}, values[k] > 0 ? 1.0 : -1.0};
-    for (int i = 0; i < size; ++i) {
-      const std::size_t s = static_cast<std::size_t>(i);
-      root.at[s] = scale[s] * solver.eigenvectors()(i, k) * std::sqrt(std::abs(values[k]));
-    }
-    roots.push_back(root);
+    Root root{std::vector<double>(size), values[k] > 0 ? 1.0 : -1.0};
+    for (std::size_t i = 0; i < size; ++i)
+      root.at[i] = scale[i] * solver.eigenvectors()(static_cast<Eigen::Index>(i), k) *
+                   std::sqrt(std::abs(values[k]));
+    roots.push_back(std::move(root));
   }
+  return roots;
+}
+
+/// The sum of its changes, by its nodes.
+Matrix sum_of(const Patch& patch) {
+  const auto size = static_cast<Eigen::Index>(6 * patch.nodes.size());
+  Matrix sum = Matrix::Zero(size, size);
+  for (const BlockChange* change : patch.changes) {
+    const auto first = [&](std::uint32_t node) {
+      return 6 * (std::ranges::find(patch.nodes, node) - patch.nodes.begin());
+    };
+    const std::array<Eigen::Index, 2> start{first(change->a), first(change->b)};
+    const int count = change->a == change->b ? 6 : 12;
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j)
+        sum(start[i / 6] + i % 6, start[j / 6] + j % 6) += change->delta(i, j);
+  }
+  return sum;
 }
 
 /// The fronts from some nodes to the root, and the columns of Z that are not zero there.
@@ -107,26 +131,68 @@ struct LowRank::Impl {
 
   explicit Impl(const FrontTree& of) : tree(of) {}
 
-  /// Changes in the order of their first front, so that a front's columns lie side by side.
-  std::vector<const BlockChange*> sorted(std::span<const BlockChange> changes) const {
-    std::vector<const BlockChange*> list;
-    for (const BlockChange& change : changes) list.push_back(&change);
-    const auto first = [&](const BlockChange* c) {
-      return std::min(tree.place_of[c->a], tree.place_of[c->b]);
-    };
-    std::stable_sort(list.begin(), list.end(), [&](const BlockChange* a, const BlockChange* b) {
-      return first(a) < first(b);
-    });
-    return list;
+  std::uint32_t first_place(const BlockChange& change) const {
+    return std::min(tree.place_of[change.a], tree.place_of[change.b]);
   }
 
-  /// `column`: per change its first column, and at the end their count.
-  Path path_of(const std::vector<const BlockChange*>& changes,
-               const std::vector<std::size_t>& column) const {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> seen;  // front, change
+  Patch alone(const BlockChange& change) const {
+    Patch patch{{&change}, {change.a}};
+    if (change.b != change.a) patch.nodes.push_back(change.b);
+    return patch;
+  }
+
+  /// Changes in the order of their first front, so that a front's columns lie side by side.
+  std::vector<Patch> sorted(std::span<const BlockChange> changes) const {
+    std::vector<Patch> patches;
+    for (const BlockChange& change : changes) patches.push_back(alone(change));
+    std::ranges::stable_sort(
+        patches, {}, [&](const Patch& patch) { return first_place(*patch.changes.front()); });
+    return patches;
+  }
+
+  /// Puts those together that are of the same nodes and have more columns than a matrix of those:
+  /// of n nodes, 6 n. The others keep their order.
+  std::vector<Patch> merged(std::vector<Patch> patches) const {
+    std::vector<Patch> groups;
+    std::vector<std::size_t> group_of, columns;
+    for (const Patch& patch : patches) {
+      std::vector<std::uint32_t> all;
+      const auto takes = [&](const Patch& group) {
+        all = group.nodes;
+        for (const std::uint32_t node : patch.nodes)
+          if (std::ranges::find(all, node) == all.end()) all.push_back(node);
+        return all.size() < group.nodes.size() + patch.nodes.size() && all.size() <= kMostNodes;
+      };
+      const auto group = std::ranges::find_if(groups, takes);
+      group_of.push_back(static_cast<std::size_t>(group - groups.begin()));
+      if (group == groups.end()) {
+        groups.push_back({patch.changes, patch.nodes});
+        columns.push_back(patch.roots.size());
+      } else {
+        group->nodes = all;
+        group->changes.push_back(patch.changes.front());
+        columns[group_of.back()] += patch.roots.size();
+      }
+    }
+    std::vector<Patch> result;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      Patch& group = groups[group_of[i]];
+      if (columns[group_of[i]] <= 6 * group.nodes.size()) {
+        result.push_back(std::move(patches[i]));
+      } else if (group.changes.front() == patches[i].changes.front()) {
+        group.roots = roots_of(sum_of(group));
+        result.push_back(group);
+      }
+    }
+    return result;
+  }
+
+  /// `column`: per patch its first column, and at the end their count.
+  Path path_of(const std::vector<Patch>& patches, const std::vector<std::size_t>& column) const {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> seen;  // front, patch
     std::vector<std::uint32_t> last(tree.fronts.size(), Front::kNone);
-    for (std::uint32_t i = 0; i < changes.size(); ++i) {
-      for (std::uint32_t node : {changes[i]->a, changes[i]->b}) {
+    for (std::uint32_t i = 0; i < patches.size(); ++i) {
+      for (const std::uint32_t node : patches[i].nodes) {
         for (std::uint32_t f = tree.front_of[tree.place_of[node]];
              f != Front::kNone && last[f] != i; f = tree.fronts[f].parent) {
           last[f] = i;
@@ -151,17 +217,15 @@ struct LowRank::Impl {
 
   Batch batch_of(std::span<const BlockChange> changes, const FrontFactor& factor,
                  std::vector<double>& signs) const {
-    const std::vector<const BlockChange*> list = sorted(changes);
-    std::vector<Root> roots;
+    std::vector<Patch> alone = sorted(changes);
+    for (Patch& patch : alone) patch.roots = roots_of(sum_of(patch));
+    const std::vector<Patch> patches = merged(std::move(alone));
     std::vector<std::size_t> column{0};
-    for (const BlockChange* change : list) {
-      append_roots(*change, roots);
-      column.push_back(roots.size());
-    }
+    for (const Patch& patch : patches) column.push_back(column.back() + patch.roots.size());
     Batch batch;
-    batch.path = path_of(list, column);
-    batch.columns = roots.size();
-    batch.stride = to_eight(roots.size());
+    batch.path = path_of(patches, column);
+    batch.columns = column.back();
+    batch.stride = to_eight(column.back());
     batch.z.assign(batch.path.rows * batch.stride, 0.0);
     std::vector<std::size_t> row_of(tree.fronts.size());  // front → its first row
     for (std::size_t i = 0; i < batch.path.fronts.size(); ++i)
@@ -170,13 +234,14 @@ struct LowRank::Impl {
       const std::uint32_t f = tree.front_of[place];
       return row_of[f] + 6 * (place - tree.fronts[f].first);
     };
-    for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t i = 0; i < patches.size(); ++i) {
       for (std::size_t c = column[i]; c < column[i + 1]; ++c) {
-        signs.push_back(roots[c].sign);
-        for (std::size_t end = 0; end < (list[i]->a == list[i]->b ? 1u : 2u); ++end) {
-          const std::size_t row = row_at(tree.place_of[end == 0 ? list[i]->a : list[i]->b]);
+        const Root& root = patches[i].roots[c - column[i]];
+        signs.push_back(root.sign);
+        for (std::size_t n = 0; n < patches[i].nodes.size(); ++n) {
+          const std::size_t row = row_at(tree.place_of[patches[i].nodes[n]]);
           for (std::size_t k = 0; k < 6; ++k)
-            batch.z[(row + k) * batch.stride + c] = roots[c].at[6 * end + k];
+            batch.z[(row + k) * batch.stride + c] = root.at[6 * n + k];
         }
       }
     }
@@ -276,7 +341,7 @@ void LowRank::clear() {
 
 double LowRank::flops_with(std::span<const BlockChange> changes) const {
   // A removed member has rank 6; what more there may be is cheap to have guessed wrong.
-  const std::vector<const BlockChange*> list = impl_->sorted(changes);
+  const std::vector<Patch> list = impl_->sorted(changes);
   std::vector<std::size_t> column(list.size() + 1);
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = 6 * i;
   const Path path = impl_->path_of(list, column);

@@ -468,6 +468,7 @@ bool World::passes(Body& a, const Body& b) {
 }
 
 void World::wake_around(Body& body) {
+  if (asleep_.empty()) return;
   WorldBox box = body.solid.extent(place(body));
   box.grow(kNeighbour);
   find_near(box);

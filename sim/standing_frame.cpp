@@ -283,19 +283,26 @@ void StandingFrame::take_out(std::span<const std::uint32_t> joints,
   bring_up_to_date(in_time() ? dynamic_ : static_);
 }
 
-/// By the scene's numbers: members that came in where nothing stands have no way.
-std::vector<FrameSolver::MassWay> StandingFrame::by_part(
-    std::vector<FrameSolver::MassWay> ways) const {
-  ways.insert(ways.begin() + frame_.slab_part(0), members_since_, {});
-  return ways;
+std::vector<std::uint32_t> StandingFrame::known_parts(std::span<const std::uint32_t> parts) const {
+  std::vector<std::uint32_t> known(parts.begin(), parts.end());
+  for (std::uint32_t& part : known) part = known_part(part);
+  return known;
 }
 
-std::vector<FrameSolver::MassWay> StandingFrame::ways() const {
-  return by_part(in_use().ways_of_displacements(loads().live));
+std::vector<FrameSolver::MassWay> StandingFrame::ways(std::span<const std::uint32_t> parts) const {
+  return in_use().ways_of_displacements(loads().live, known_parts(parts));
 }
 
-std::vector<FrameSolver::MassWay> StandingFrame::speeds() const {
-  return by_part(in_use().ways_of(v_));
+std::vector<FrameSolver::MassWay> StandingFrame::speeds(
+    std::span<const std::uint32_t> parts) const {
+  return in_use().ways_of(v_, known_parts(parts));
+}
+
+std::vector<std::uint32_t> StandingFrame::parts_at(std::span<const std::uint32_t> joints,
+                                                   std::span<const std::uint32_t> parts) const {
+  std::vector<std::uint32_t> at = in_use().parts_at(joints, known_parts(parts));
+  for (std::uint32_t& part : at) part = moved_up(part, frame_.slab_part(0), members_since_);
+  return at;
 }
 
 void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
@@ -306,8 +313,8 @@ void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
 void StandingFrame::change_panels(std::span<const PanelStiffness> changed) {
   for (const PanelStiffness& each : changed) {
     const std::uint32_t known = known_part(each.part);
-    const auto panel = std::ranges::lower_bound(panels_, known, {},
-                                                [](const Panel& p) { return p.element.part; });
+    const auto panel =
+        std::ranges::lower_bound(panels_, known, {}, [](const Panel& p) { return p.element.part; });
     if (panel == panels_.end() || panel->element.part != known) continue;  // it lost an edge
     panel->element.stiffness = each.stiffness;
     ++panel->set;
@@ -385,10 +392,7 @@ double StandingFrame::strain() const {
 }
 
 double StandingFrame::potential() const {
-  double height = 0;
-  for (const FrameSolver::MassWay& way : ledger().ways_of_displacements(loads().live))
-    height += way.moved.y;
-  return scene_.simulation.gravity * height;
+  return scene_.simulation.gravity * ledger().height_of_masses(loads().live);
 }
 
 double StandingFrame::energy() const {

@@ -98,9 +98,12 @@ class StandingFrame {
     Vec3 velocity, spin;
   };
   Motion motion(std::uint32_t node) const;
-  /// By part; of displacements with live loads, of velocities (in time) without.
-  std::vector<FrameSolver::MassWay> ways() const;
-  std::vector<FrameSolver::MassWay> speeds() const;
+  /// Of these parts; of displacements with live loads, of velocities (in time) without.
+  std::vector<FrameSolver::MassWay> ways(std::span<const std::uint32_t> parts) const;
+  std::vector<FrameSolver::MassWay> speeds(std::span<const std::uint32_t> parts) const;
+  /// Parts whose ways take_out() of these joints and parts (give their joints too) may change.
+  std::vector<std::uint32_t> parts_at(std::span<const std::uint32_t> joints,
+                                      std::span<const std::uint32_t> parts) const;
 
   double kinetic() const;    ///< J
   double strain() const;     ///< J
@@ -162,7 +165,7 @@ class StandingFrame {
   void make_dynamic();
   void start_anew(const std::vector<Hinge>& hinges);
   std::uint32_t known_part(std::uint32_t part) const;
-  std::vector<FrameSolver::MassWay> by_part(std::vector<FrameSolver::MassWay> ways) const;
+  std::vector<std::uint32_t> known_parts(std::span<const std::uint32_t> parts) const;
   void move_on();
   void find_momentum() const;
   void account_for_damping();

@@ -361,6 +361,39 @@ TEST(BlockFactor, StiffensAndSoftensInOneChange) {
   EXPECT_LE(difference(solve(factor, b), dense_solve(dense(with), b)), 1e-10);
 }
 
+/// As beams that lose their far ends and hang on the near ones: several changes of the same nodes,
+/// decomposed together.
+TEST(BlockFactor, ChangesThatShareNodesAddUp) {
+  const Model model = building(5, 6, 8);
+  const std::vector<std::size_t> beams = beams_of(model, 5);
+  for (const std::size_t count : {1u, 3u, 8u, 20u}) {
+    BlockFactor factor = model.factor();
+    ASSERT_EQ(factor.factor(), BlockFactor::kNoNode);
+    std::vector<BlockChange> changes;
+    for (std::size_t i = 0; i < count; ++i) {
+      const BlockChange& beam = model.changes[beams[40 + i]];
+      changes.push_back(negative(beam));
+      BlockChange hanging{beam.a, beam.a, {}};
+      for (int k = 0; k < 6; ++k) hanging.delta(k, k) = 1e5 * (1 + k);
+      hanging.delta(1, 5) = hanging.delta(5, 1) = 2e5;
+      changes.push_back(hanging);
+    }
+    ASSERT_EQ(factor.change(changes), BlockFactor::kNoNode);
+    EXPECT_LE(count <= 3 ? 1u : 0u, factor.counts().low_rank) << count << " beams";
+    Model with = model;
+    with.changes.insert(with.changes.end(), changes.begin(), changes.end());
+    BlockFactor fresh = with.factor();
+    ASSERT_EQ(fresh.factor(), BlockFactor::kNoNode);
+    const Numbers b = random_vector(model.nodes, 3 + count);
+    EXPECT_LE(difference(solve(factor, b), solve(fresh, b)), 1e-10) << count << " beams";
+    for (BlockChange& change : changes) change = negative(change);
+    ASSERT_EQ(factor.change(changes), BlockFactor::kNoNode);
+    BlockFactor before = model.factor();
+    ASSERT_EQ(before.factor(), BlockFactor::kNoNode);
+    EXPECT_LE(difference(solve(factor, b), solve(before, b)), 1e-10) << count << " and back";
+  }
+}
+
 TEST(BlockFactor, NamesTheNodeWithoutStiffness) {
   for (std::uint32_t node : {0u, 7u, 23u}) {
     Model model = building(3, 4, 2);
