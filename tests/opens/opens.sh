@@ -24,7 +24,8 @@ if command -v godot3 > /dev/null && command -v xvfb-run > /dev/null; then
   # The editor imports, and ends.
   xvfb-run -a godot3 --editor --quit --path "$project" > "$project/import.log" 2>&1 || true
   xvfb-run -a godot3 --path "$project" -s godot.gd > "$project/opened.log" 2>&1 || status=1
-  grep -E '^(opened|FAULT|Godot [0-9.]+)' "$project/opened.log"
+  grep -E '^(opened|FAULT|Godot [0-9.]+)' "$project/opened.log" ||
+    { cat "$project/opened.log"; status=1; }
 else
   echo "godot3 and xvfb are not installed: not tried"
 fi

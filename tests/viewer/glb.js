@@ -109,3 +109,26 @@ export function addRun(glb, { utilisation, broken }) {
   };
   return { names, points };
 }
+
+/** Gives every part the same motion: none until 0.4 s, then half a metre along z within 0.1 s. */
+export function moveAll(glb) {
+  const { json } = glb;
+  const values = Float32Array.of(0.4, 0.5, 0, 0, 0, 0, 0, 0.5);
+  glb.binary = padded(glb.binary, 0);
+  const view = json.bufferViews.push({
+    buffer: 0,
+    byteOffset: glb.binary.length,
+    byteLength: values.byteLength,
+  });
+  glb.binary = Buffer.concat([glb.binary, Buffer.from(values.buffer)]);
+  const common = { bufferView: view - 1, componentType: 5126, count: 2 };
+  const input = json.accessors.push({ ...common, type: "SCALAR", min: [0.4], max: [0.5] }) - 1;
+  const output = json.accessors.push({ ...common, byteOffset: 8, type: "VEC3" }) - 1;
+  const parts = json.nodes.flatMap((node, i) => (node.mesh === undefined ? [] : [i]));
+  json.animations = [
+    {
+      samplers: [{ input, output }],
+      channels: parts.map((node) => ({ sampler: 0, target: { node, path: "translation" } })),
+    },
+  ];
+}

@@ -110,10 +110,8 @@ export class World {
     this.surfaces = new Surfaces(model, this.uniforms, (source) => this.textureOf(source));
     this.scene.add(...this.surfaces.meshes);
     this.addLines(model.geometry.lines);
-    this.widest = model.geometry.widths.reduce(
-      (a, b, i) => (model.motion.start[i] === Infinity ? Math.max(a, b) : a),
-      0,
-    );
+    const { lineSpans, widths } = model.geometry;
+    this.widest = lineSpans.reduce((most, { part }) => Math.max(most, widths[part]), 0);
     this.graph = new Graph(model, this.uniforms);
     this.scene.add(this.graph.object);
     this.fit();
