@@ -56,9 +56,9 @@ struct SolidAsset {
   SolidModel solid;
   double density = 2400;  ///< kg/m³
   ModelSurface surface;   ///< sound, in metres, local frame
-  /// Origin of the local frame, in the model's own coordinates, m. A model several times as far from
-  /// its origin as it is large would lose in float32 what a file is good for: its local frame is
-  /// in its middle, and `solid.position` has moved along. 0 for others.
+  /// Origin of the local frame, in the model's own coordinates, m. Where a model's middle is more
+  /// than twice its extent away from 0 along an axis, float32 would lose what a file is good for:
+  /// there it is the middle, and `solid.position` has moved along. 0 along other axes.
   Vec3 origin;
   SolidPartition partition;
   std::vector<MassProperties> chunks;  ///< at density 1, local frame

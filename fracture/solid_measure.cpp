@@ -58,18 +58,18 @@ struct Sum {
 }  // namespace
 
 Vec3 origin_for(const TriMesh& surface) {
-  constexpr double kFar = 4;  // as the origin's distance is to half the size: two bits lost
+  constexpr double kFar = 4;  // half extents: what float32 loses there, three bits, is let go
   Vec3 low = surface.vertices.front(), high = low;
   for (const Vec3 v : surface.vertices) {
     low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
-  const Vec3 half = 0.5 * (high - low), middle = 0.5 * (high + low);
-  const double size = std::max({half.x, half.y, half.z});
-  const double away = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
-  if (!(away > kFar * size)) return {};
-  const auto in_file = [](double x) { return static_cast<double>(static_cast<float>(x)); };
-  return {in_file(middle.x), in_file(middle.y), in_file(middle.z)};
+  const auto along = [&](double from, double to) {
+    const double middle = (from + to) / 2;
+    if (!(std::abs(middle) > kFar * (to - from) / 2)) return 0.0;
+    return static_cast<double>(static_cast<float>(middle));
+  };
+  return {along(low.x, high.x), along(low.y, high.y), along(low.z, high.z)};
 }
 
 bool has_crossings(const SolidPartition& partition, Vec3 origin) {

@@ -166,6 +166,7 @@ class RigidWorld {
 
   /// Takes up to `energy` (J) from what bodies that are awake move against each other, as if they
   /// stuck together for a moment; momentum and angular momentum stay. Returns the energy taken.
+  /// Of bodies, here and in spend, that are gone already nothing is taken.
   double slow_together(std::span<const BodyId> bodies, double energy);
   /// Energy (J) that its contacts took is something else's, cracks': it lifts nothing any more.
   void spend(BodyId body, double energy);

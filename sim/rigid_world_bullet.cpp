@@ -1239,13 +1239,12 @@ std::uint64_t RigidWorld::solver_fallbacks() const {
 double RigidWorld::slow_together(std::span<const BodyId> ids, double energy) {
   std::vector<Body*> bodies;
   for (const BodyId id : ids)
-    if (Body& body = impl_->world.body(id); body.awake) bodies.push_back(&body);
+    if (Body* body = impl_->world.bodies[id].get(); body && body->awake) bodies.push_back(body);
   return approach_common_motion(bodies, energy);
 }
 
 void RigidWorld::spend(BodyId id, double energy) {
-  Body& body = impl_->world.body(id);
-  if (body.moves) body.taken -= energy;
+  if (Body* body = impl_->world.bodies[id].get(); body && body->moves) body->taken -= energy;
 }
 
 void RigidWorld::exempt(BodyId id, double seconds) {

@@ -83,6 +83,18 @@ TEST(SolidPlace, ThinSolidsFarAwayKeepTheirVolumeInFloat32) {
   EXPECT_LT(worst, 1e-7);
 }
 
+TEST(SolidPlace, AThinSolidIsMovedAlongItsThicknessAlone) {
+  double worst = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const SolidAsset asset = sliced(moved(box({0, 0, 0}, {1, 0.01, 1}), {0.3, 1.37, 0}), seed);
+    EXPECT_EQ(asset.origin.x, 0);
+    EXPECT_NEAR(asset.origin.y, 1.375, 1e-6);
+    EXPECT_EQ(asset.origin.z, 0);
+    worst = std::max(worst, volume_error_in_float32(asset));
+  }
+  EXPECT_LT(worst, 1e-7);
+}
+
 TEST(SolidPlace, RoughSolidsFarAwayDoNotCrossInFloat32) {
   SolidModel model;
   model.pattern = SolidVoronoiParams{.count = 12, .points = {}, .sites = {}};
