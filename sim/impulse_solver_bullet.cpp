@@ -186,8 +186,7 @@ class Solver final : public Base {
       btSolverConstraint& row =
           m_tmpSolverContactConstraintPool[iteration % 2 == 0 ? k : count - 1 - k];
       most = std::max(most, solve_friction(row));
-      const double change =
-          this->resolveSingleConstraintRowLowerLimit(body_a(row), body_b(row), row);
+      const double change = solve_normal(row);
       most = std::max(most, change * change);
     }
     return most;
@@ -273,6 +272,25 @@ class Solver final : public Base {
                          row.m_contactNormal2.dot(b.m_deltaLinearVelocity) +
                          row.m_relpos2CrossNormal.dot(b.m_deltaAngularVelocity);
     return row.m_rhs - speed * row.m_jacDiagABInv;
+  }
+
+  /// A contact pushes or lets go. Returns the change in speed. The sums are in the order of Bullet's
+  /// function for such rows, which cannot be inlined.
+  double solve_normal(btSolverConstraint& row) {
+    const btSolverBody& a = body_a(row);
+    const btSolverBody& b = body_b(row);
+    const double of_a = row.m_contactNormal1.dot(a.m_deltaLinearVelocity) +
+                        row.m_relpos1CrossNormal.dot(a.m_deltaAngularVelocity);
+    const double of_b = row.m_contactNormal2.dot(b.m_deltaLinearVelocity) +
+                        row.m_relpos2CrossNormal.dot(b.m_deltaAngularVelocity);
+    double change = row.m_rhs - row.m_appliedImpulse * row.m_cfm;
+    change -= of_a * row.m_jacDiagABInv;
+    change -= of_b * row.m_jacDiagABInv;
+    const double sum = row.m_appliedImpulse + change;
+    if (sum < row.m_lowerLimit) change = row.m_lowerLimit - row.m_appliedImpulse;
+    row.m_appliedImpulse = std::max(sum, static_cast<double>(row.m_lowerLimit));
+    apply(row, change);
+    return change * (1 / row.m_jacDiagABInv);
   }
 
   /// Returns the square of the change in speed.
