@@ -155,12 +155,13 @@ struct ExplicitFrame::Impl {
 
   void sum_forces() {
     for (Node& node : nodes) node.force = node.load;
-    Vector12 u;
+    Vector12 u, v;
     for (const Member& member : members) {
       if (!member.present) continue;
       for (std::uint32_t n = member.first; n < member.first + params.elements; ++n) {
         u << nodes[n].u, nodes[n + 1].u;
-        const Vector12 f = member.stiffness * u;
+        v << nodes[n].v, nodes[n + 1].v;
+        const Vector12 f = member.stiffness * (u + params.damping_stiffness * v);
         nodes[n].force -= f.head<6>();
         nodes[n + 1].force -= f.tail<6>();
       }

@@ -16,7 +16,8 @@ struct ExplicitParams {
   int elements = 4;         ///< per member
   double step = 2e-5;       ///< s
   double gravity = 9.81;    ///< m/s²
-  double damping_mass = 0;  ///< 1/s, times the mass
+  double damping_mass = 0;       ///< 1/s, times the mass
+  double damping_stiffness = 0;  ///< s, times the stiffness
   /// Joints are judged by a first-order lag of so long, s; 0: at once.
   double lag = 0;
   bool breaking = true;
