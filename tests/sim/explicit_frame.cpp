@@ -82,7 +82,8 @@ struct ExplicitFrame::Impl {
   }
 
   std::uint32_t node_of(std::uint32_t end) const {
-    return members[end / 2].first + (end % 2 == 0 ? 0 : static_cast<std::uint32_t>(params.elements));
+    return members[end / 2].first +
+           (end % 2 == 0 ? 0 : static_cast<std::uint32_t>(params.elements));
   }
 
   void add(std::uint32_t m) {
@@ -93,8 +94,16 @@ struct ExplicitFrame::Impl {
     Matrix3d to_world;
     to_world << eigen(axes.x), eigen(axes.y), eigen(axes.z);
     const double g = steel.youngs_modulus / (2 * (1 + steel.poisson_ratio));
-    const Rod rod{frame.length(given) / params.elements, s.area, s.iy, s.iz, s.it, s.avy, s.avz,
-                  steel.youngs_modulus, g, steel.density};
+    const Rod rod{frame.length(given) / params.elements,
+                  s.area,
+                  s.iy,
+                  s.iz,
+                  s.it,
+                  s.avy,
+                  s.avz,
+                  steel.youngs_modulus,
+                  g,
+                  steel.density};
     Matrix12d turn = Matrix12d::Zero();
     for (int i = 0; i < 4; ++i) turn.block<3, 3>(3 * i, 3 * i) = to_world;
     Member member;
@@ -260,7 +269,9 @@ struct ExplicitFrame::Impl {
     }
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd f = Eigen::VectorXd::Zero(6 * count);
-    const auto at = [&](std::uint32_t node, int i) { return static_cast<int>(6 * number[node]) + i; };
+    const auto at = [&](std::uint32_t node, int i) {
+      return static_cast<int>(6 * number[node]) + i;
+    };
     for (const Member& member : members)
       for (std::uint32_t n = member.first; n < member.first + params.elements; ++n)
         for (int i = 0; i < 12; ++i)
@@ -288,8 +299,8 @@ struct ExplicitFrame::Impl {
       for (std::uint32_t n = member.first; n <= member.first + params.elements; ++n) {
         const Node& node = nodes[n];
         const Vector6 v = time == 0 ? node.v : Vector6(node.v - 0.5 * params.step * node.a);
-        twice += node.mass * v.head<3>().squaredNorm() +
-                 v.tail<3>().dot(node.inertia * v.tail<3>());
+        twice +=
+            node.mass * v.head<3>().squaredNorm() + v.tail<3>().dot(node.inertia * v.tail<3>());
       }
     }
     return twice / 2;

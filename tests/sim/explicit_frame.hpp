@@ -13,9 +13,9 @@
 namespace sunder {
 
 struct ExplicitParams {
-  int elements = 4;         ///< per member
-  double step = 2e-5;       ///< s
-  double gravity = 9.81;    ///< m/s²
+  int elements = 4;              ///< per member
+  double step = 2e-5;            ///< s
+  double gravity = 9.81;         ///< m/s²
   double damping_mass = 0;       ///< 1/s, times the mass
   double damping_stiffness = 0;  ///< s, times the stiffness
   /// Joints are judged by a first-order lag of so long, s; 0: at once.
@@ -43,10 +43,10 @@ class ExplicitFrame {
   };
   void run(double until);  ///< s
   const std::vector<Break>& breaks() const;
-  JointLoad load(std::uint32_t joint) const;            ///< at the last step
-  double energy() const;                                ///< kinetic, strain and of the weight, J
-  double kinetic() const;                               ///< J
-  Vec3 displacement(std::uint32_t m, int end) const;    ///< of a member's end, m
+  JointLoad load(std::uint32_t joint) const;          ///< at the last step
+  double energy() const;                              ///< kinetic, strain and of the weight, J
+  double kinetic() const;                             ///< J
+  Vec3 displacement(std::uint32_t m, int end) const;  ///< of a member's end, m
 
  private:
   struct Impl;
