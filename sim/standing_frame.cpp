@@ -416,7 +416,16 @@ std::vector<StandingFrame::TipState> StandingFrame::tips_of(const FrameSolver& s
 
 void StandingFrame::take_tips(const std::vector<TipState>& tips) {
   for (const TipState& tip : tips) {
-    const std::size_t at = dynamic_.frame->freedom_of_tip(tip.member);
+    std::uint32_t member = tip.member;
+    if (dynamic_.frame->freedom_of_tip(member) == FrameSolver::kHeld) {  // it divided
+      const auto is_rest = [node = frame_.members[member].to](const FrameMember& other) {
+        return other.from == node;
+      };
+      const auto rest = std::ranges::find_if(frame_.members, is_rest);
+      member = static_cast<std::uint32_t>(rest - frame_.members.begin());
+      if (rest == frame_.members.end()) continue;
+    }
+    const std::size_t at = dynamic_.frame->freedom_of_tip(member);
     if (at == FrameSolver::kHeld) continue;
     std::ranges::copy(tip.u, u_.data() + at);
     std::ranges::copy(tip.v, v_.data() + at);
