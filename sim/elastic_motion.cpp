@@ -157,6 +157,7 @@ bool ElasticMotion::settle_breaks() {
   double lowered = 0;
   const std::vector<std::uint32_t> released = release_loose(lowered);
   for (const std::uint32_t piece : in_pieces) {
+    limit_forces(piece);
     auto groups = links_.components(bodies_.pieces()[piece].parts);
     if (groups.size() > 1) bodies_.split(piece, std::move(groups));
   }
@@ -175,6 +176,18 @@ bool ElasticMotion::settle_breaks() {
   fracture_ += before - (is_struck ? energy() + lowered : world_.kinetic_energy());
   broken_.clear();
   return true;
+}
+
+/// What parted in a piece bore its strength, not more: what is left of the piece gets no more of the
+/// forces that are on it.
+void ElasticMotion::limit_forces(std::uint32_t piece) {
+  double most = 1;
+  for (const std::uint32_t j : broken_)
+    if (bodies_.is_loose(frame_.joints[j].a) && bodies_.piece_of(frame_.joints[j].a) == piece)
+      most = std::max(most, utilisation(inner_.load(j), frame_.joints[j].strength).total);
+  if (most == 1) return;
+  for (const std::uint32_t part : bodies_.pieces()[piece].parts)
+    if (touches_[part].is_active) touches_.limit(part, 1 / most);
 }
 
 /// Parts that bear on each other no more.

@@ -195,5 +195,28 @@ TEST(Cascade, GoesOnAsFastAsAnExplicitProgramSays) {
               0.3 * static_cast<double>(expected_count));
 }
 
+// What parted first bore its strength, and so much of the ground's push has come through it: what
+// is left does not get all of it.
+TEST(Cascade, ARestOfAPieceGetsNoMoreThanWhatPartedBore) {
+  CollapseScene scene = bare(2, 2, 2);
+  for (FrameJoint& joint : scene.frame.joints)
+    if (joint.kind == FrameJoint::Kind::base) {
+      scale_strength(joint, 1e-6);
+      joint.strength.bearing = false;
+    }
+  scene.simulation.ground = true;
+  scene.simulation.ground_height = -1;  // falls for 0.45 s
+  scene.simulation.duration = 0.8;
+  const CollapseResult r = simulate_collapse(scene);
+  std::vector<JointBreak> breaks = r.broken_joints;
+  std::erase_if(breaks, [](const JointBreak& b) { return b.time < 0.4; });
+  ASSERT_GT(breaks.size(), 8u);
+  EXPECT_GT(breaks.front().utilisation, 10) << "it was stopped at once";
+  for (const JointBreak& b : breaks) EXPECT_LT(b.utilisation, 1.1 * breaks.front().utilisation);
+  EXPECT_GT(breaks.back().time, breaks.front().time + 0.05) << "some hold until it falls again";
+  EXPECT_LT(std::fabs(r.energy.numerical), 1e-8 * std::fabs(r.energy.potential));
+  EXPECT_LT(r.momentum_error, 1e-12);
+}
+
 }  // namespace
 }  // namespace sunder
