@@ -149,6 +149,7 @@ bool ElasticMotion::settle_breaks() {
   }
   std::ranges::sort(in_pieces);
   in_pieces.erase(std::ranges::unique(in_pieces).begin(), in_pieces.end());
+  for (const std::uint32_t piece : in_pieces) hold_back_forces(piece);
   const bool is_struck = !of_standing.empty();
   const double before = is_struck ? energy() : world_.kinetic_energy();
   if (is_struck) standing_.wake();
@@ -157,7 +158,6 @@ bool ElasticMotion::settle_breaks() {
   double lowered = 0;
   const std::vector<std::uint32_t> released = release_loose(lowered);
   for (const std::uint32_t piece : in_pieces) {
-    limit_forces(piece);
     auto groups = links_.components(bodies_.pieces()[piece].parts);
     if (groups.size() > 1) bodies_.split(piece, std::move(groups));
   }
@@ -178,16 +178,15 @@ bool ElasticMotion::settle_breaks() {
   return true;
 }
 
-/// What parted in a piece bore its strength, not more: what is left of the piece gets no more of the
-/// forces that are on it.
-void ElasticMotion::limit_forces(std::uint32_t piece) {
+/// What parted in a piece bore its strength, not more: the rest of the forces on the piece comes on
+/// what is left of it as that gives way, not at once.
+void ElasticMotion::hold_back_forces(std::uint32_t piece) {
   double most = 1;
   for (const std::uint32_t j : broken_)
     if (bodies_.is_loose(frame_.joints[j].a) && bodies_.piece_of(frame_.joints[j].a) == piece)
       most = std::max(most, utilisation(inner_.load(j), frame_.joints[j].strength).total);
-  if (most == 1) return;
   for (const std::uint32_t part : bodies_.pieces()[piece].parts)
-    if (touches_[part].is_active) touches_.limit(part, 1 / most);
+    if (most > 1 && touches_[part].is_active) touches_.hold_back(part, 1 / most);
 }
 
 /// Parts that bear on each other no more.

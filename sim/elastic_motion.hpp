@@ -83,7 +83,7 @@ class ElasticMotion final : public FrameMotion {
   // elastic_motion.cpp
   double energy() const;  ///< of frame and bodies, J
   void link_again();
-  void limit_forces(std::uint32_t piece);
+  void hold_back_forces(std::uint32_t piece);
   void part_bodies();
   bool settle_hinges();
   std::vector<std::uint32_t> release_loose(double& lowered);

@@ -197,7 +197,7 @@ TEST(Cascade, GoesOnAsFastAsAnExplicitProgramSays) {
 
 // What parted first bore its strength, and so much of the ground's push has come through it: what
 // is left does not get all of it.
-TEST(Cascade, ARestOfAPieceGetsNoMoreThanWhatPartedBore) {
+TEST(Cascade, APieceThatIsStoppedFallsApartByAndBy) {
   CollapseScene scene = bare(2, 2, 2);
   for (FrameJoint& joint : scene.frame.joints)
     if (joint.kind == FrameJoint::Kind::base) {
@@ -213,7 +213,8 @@ TEST(Cascade, ARestOfAPieceGetsNoMoreThanWhatPartedBore) {
   ASSERT_GT(breaks.size(), 8u);
   EXPECT_GT(breaks.front().utilisation, 10) << "it was stopped at once";
   for (const JointBreak& b : breaks) EXPECT_LT(b.utilisation, 1.1 * breaks.front().utilisation);
-  EXPECT_GT(breaks.back().time, breaks.front().time + 0.05) << "some hold until it falls again";
+  const auto at_once = std::ranges::count(breaks, breaks.front().time, &JointBreak::time);
+  EXPECT_LT(4 * at_once, static_cast<std::ptrdiff_t>(3 * breaks.size()));
   EXPECT_LT(std::fabs(r.energy.numerical), 1e-8 * std::fabs(r.energy.potential));
   EXPECT_LT(r.momentum_error, 1e-12);
 }
