@@ -106,24 +106,6 @@ bool ElasticMotion::settle_hinges() {
   return true;
 }
 
-/// A member that lost one end hangs on the other as a rigid arm, whose inertia is far above what
-/// turned at that node before: next to nothing of its angular momentum is left as speed.
-void ElasticMotion::stop_turning(std::span<const std::uint32_t> joints) {
-  const auto is_held = [&](std::uint32_t part, std::uint32_t node) {
-    return std::ranges::any_of(links_.joints_of(part), [&](std::uint32_t j) {
-      return frame_.joints[j].node == node && links_.intact(j);
-    });
-  };
-  for (const std::uint32_t j : joints) {
-    for (const std::uint32_t part : {frame_.joints[j].a, frame_.joints[j].b}) {
-      if (part >= frame_.members.size() || !bodies_.stands(part)) continue;
-      const FrameMember& member = frame_.members[part];
-      if (is_held(part, member.from) == is_held(part, member.to)) continue;
-      standing_.stop_turning(is_held(part, member.from) ? member.from : member.to);
-    }
-  }
-}
-
 double ElasticMotion::energy() const {
   return standing_.kinetic() + standing_.strain() + potential() + world_.kinetic_energy();
 }
@@ -175,6 +157,7 @@ bool ElasticMotion::settle_breaks() {
   }
   std::ranges::sort(in_pieces);
   in_pieces.erase(std::ranges::unique(in_pieces).begin(), in_pieces.end());
+  for (const std::uint32_t piece : in_pieces) hold_back_forces(piece);
   const bool is_struck = !of_standing.empty();
   const double before = is_struck ? energy() : world_.kinetic_energy();
   if (is_struck) standing_.wake();
@@ -195,7 +178,6 @@ bool ElasticMotion::settle_breaks() {
     });
     standing_.take_out(of_standing, released);
     keep_places(ways);
-    if (standing_.in_time()) stop_turning(broken_);
     standing_.carry_on();
   }
   part_bodies();
@@ -203,6 +185,17 @@ bool ElasticMotion::settle_breaks() {
   fracture_ += before - (is_struck ? energy() + lowered : world_.kinetic_energy());
   broken_.clear();
   return true;
+}
+
+/// What parted in a piece bore its strength, not more: the rest of the forces on the piece comes on
+/// what is left of it as that gives way, not at once.
+void ElasticMotion::hold_back_forces(std::uint32_t piece) {
+  double most = 1;
+  for (const std::uint32_t j : broken_)
+    if (bodies_.is_loose(frame_.joints[j].a) && bodies_.piece_of(frame_.joints[j].a) == piece)
+      most = std::max(most, utilisation(inner_.load(j), frame_.joints[j].strength).total);
+  for (const std::uint32_t part : bodies_.pieces()[piece].parts)
+    if (most > 1 && touches_[part].is_active) touches_.hold_back(part, 1 / most);
 }
 
 /// Parts that bear on each other no more.

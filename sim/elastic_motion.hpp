@@ -83,9 +83,9 @@ class ElasticMotion final : public FrameMotion {
   // elastic_motion.cpp
   double energy() const;  ///< of frame and bodies, J
   void link_again();
+  void hold_back_forces(std::uint32_t piece);
   void part_bodies();
   bool settle_hinges();
-  void stop_turning(std::span<const std::uint32_t> joints);
   std::vector<SupportGraph::Island> loose_from_standing();
   std::vector<std::uint32_t> release_loose(std::vector<SupportGraph::Island> islands,
                                            double& lowered);

@@ -33,6 +33,9 @@ std::uint32_t ElasticMotion::held_node(std::uint32_t part, std::uint32_t node) c
 /// Of a part at its node.
 Vec3 ElasticMotion::velocity_of_end(std::uint32_t part, std::uint32_t node) const {
   const std::uint32_t held = held_node(part, node);
+  if (held != node)
+    if (const std::optional<StandingFrame::TipMotion> tip = standing_.tip(part))
+      return tip->velocity;
   const StandingFrame::Motion motion = standing_.motion(held);
   return motion.velocity +
          cross(motion.spin, frame_.nodes[node].position - frame_.nodes[held].position);
@@ -40,6 +43,9 @@ Vec3 ElasticMotion::velocity_of_end(std::uint32_t part, std::uint32_t node) cons
 
 Vec3 ElasticMotion::way_of_end(std::uint32_t part, std::uint32_t node) const {
   const std::uint32_t held = held_node(part, node);
+  if (held != node)
+    if (const std::optional<StandingFrame::TipMotion> tip = standing_.tip(part))
+      return tip->displacement;
   return standing_.displacement(held) +
          cross(standing_.rotation(held), frame_.nodes[node].position - frame_.nodes[held].position);
 }

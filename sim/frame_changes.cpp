@@ -120,7 +120,7 @@ void FrameSolver::Impl::find_pieces() {
   std::vector<std::uint32_t> parent(ground + 1);
   std::iota(parent.begin(), parent.end(), 0u);
   for (const Member& member : members) {
-    if (member.role != Role::elastic) continue;
+    if (member.role != Role::elastic || member.tip) continue;
     const std::uint32_t a = root_of(parent, std::min(member.node[0], ground));
     const std::uint32_t b = root_of(parent, std::min(member.node[1], ground));
     parent[std::min(a, b)] = std::max(a, b);
@@ -128,7 +128,7 @@ void FrameSolver::Impl::find_pieces() {
   std::vector<std::uint8_t> in_use(ground, 0);
   for (const Member& member : members)
     for (const std::uint32_t node : member.node)
-      if (member.present() && node < kFixed) in_use[node] = 1;
+      if (member.present() && node < ground) in_use[node] = 1;
   std::vector<std::uint32_t> number(ground + 1, kNone);
   pieces.clear();
   idle.clear();
@@ -189,7 +189,7 @@ void FrameSolver::Impl::restrain_rotations() {
     double sum[3][3] = {};
     for (const std::uint32_t end : links.ends_at(links.frame_node(n))) {
       const Member& member = members[end / 2];
-      if (member.role != Role::elastic || member.node[end % 2] != n) continue;
+      if (member.role != Role::elastic || member.tip || member.node[end % 2] != n) continue;
       const int offset = 6 * static_cast<int>(end % 2) + 3;
       const Matrix12 stiffness = stiffness_of(elements[end / 2]);
       for (int i = 0; i < 9; ++i) sum[i / 3][i % 3] += stiffness(offset + i / 3, offset + i % 3);

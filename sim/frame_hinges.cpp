@@ -53,7 +53,7 @@ bool FrameSolver::Impl::can_bend(std::uint32_t j) const {
     return false;
   std::vector<std::uint32_t> ends;
   links.ends_beyond(j, ends);
-  return ends.size() == 1 && members[joint.a].role == Role::elastic;
+  return ends.size() == 1 && members[joint.a].role == Role::elastic && !members[joint.a].tip;
 }
 
 const BeamElement& FrameSolver::Impl::unbent(std::uint32_t m) const {
@@ -86,7 +86,8 @@ void FrameSolver::Impl::bend(std::uint32_t m) {
   if (bent_of[m] == kNone) return;
   Bent& b = bent[bent_of[m]];
   for (std::size_t end = 0; end < 2; ++end) {
-    if (b.joint[end] != kNone && links.intact(b.joint[end]) && members[m].role == Role::elastic)
+    if (b.joint[end] != kNone && links.intact(b.joint[end]) &&
+        members[m].role == Role::elastic && !members[m].tip)
       continue;
     b.joint[end] = kNone;
     b.flows[end] = false;

@@ -48,7 +48,7 @@ void add_moment(SymMat3& inertia, double mass, Vec3 r) {
 }
 
 std::uint32_t FrameSolver::Impl::piece_of(const Member& member) const {
-  if (member.role == Role::hanging) {
+  if (member.role == Role::hanging || member.tip) {
     const std::uint32_t node = member.node[static_cast<std::size_t>(member.held_end)];
     return node < kFixed ? piece_of_node[node] : kNone;
   }

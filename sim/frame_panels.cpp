@@ -136,7 +136,8 @@ void FrameSolver::Impl::place_corners(Panel& panel) const {
     take(k, members[m].node[along ? 0 : 1]);
     take((k + 1) % 4, members[m].node[along ? 1 : 0]);
   }
-  for (const std::uint32_t node : panel.node) holds &= node <= kFixed;
+  for (const std::uint32_t node : panel.node)
+    holds &= node < links.node_count() || node == kFixed;
   panel.is_lost |= !holds;
 }
 

@@ -84,7 +84,7 @@ FrameSolver::Impl::Impl(const Frame& frame_to_hold, const FrameSolverParams& par
   }
   if (params.mass != 0) make_masses(edges);
   update(std::move(all_members), std::move(all_plates));
-  f.assign(6 * std::size_t{links.node_count()}, 0);
+  f.assign(6 * (links.node_count() + (params.tips ? members.size() : 0)), 0);
   u = f;
   forces.assign(members.size(), {});
   plate_loads.assign(frame.joints.size(), {});
@@ -490,13 +490,20 @@ void FrameSolver::stiffness_times(std::span<const double> u, std::span<double> f
 }
 
 void FrameSolver::mass_times(std::span<const double> a, std::span<double> f) const {
-  if (impl_->masses) return impl_->masses->multiply(a, f);
+  if (impl_->masses) {
+    const std::size_t count = 6 * std::size_t{impl_->links.node_count()};
+    std::ranges::fill(f.subspan(count), 0.0);
+    impl_->masses->multiply(a.first(count), f.first(count));
+    impl_->add_mass_of_tips(a, f);
+    return;
+  }
   impl_->sum_members(a, f, [&](std::uint32_t m, const Twelve& motion) {
     return times(impl_->mass_matrix(m), motion);
   });
 }
 
 void FrameSolver::solve_system(std::span<const double> f, std::span<double> u) const {
+  if (impl_->params.tips) return impl_->solve_with_tips(f, u);
   if (impl_->factor) impl_->factor->solve(f, u);
 }
 

@@ -32,6 +32,8 @@ struct FrameSolverParams {
   /// A piece of a building that flies, as a frame of its own: mechanisms in it are held and told of
   /// as in pieces that broke off, and walls without a lower beam hang on what is left of them.
   bool free = false;
+  /// In time a member that one end let go of moves on as a cantilever; else it is a rigid one.
+  bool tips = false;
   /// Of walls, kg, by number; empty: as their outlines weigh. In a piece a wall's neighbours, which
   /// trim it, may be missing.
   std::vector<double> wall_mass = {};
@@ -174,8 +176,20 @@ class FrameSolver {
                                       std::span<const std::uint32_t> parts) const;
   FactorCounts counts() const;
 
-  // For dynamics: vectors of six numbers per free node (`freedoms`), in an order of their own.
+  // For dynamics: vectors of six numbers per free node (`freedoms`), in an order of their own, then
+  // with `tips` of six per member for its free end (0 where it has none).
   std::size_t freedoms() const;
+  /// The free end of a member in time, that hangs on the other one; kHeld: it is none.
+  std::size_t freedom_of_tip(std::uint32_t member) const;
+  /// A free end that came to be: it starts as these six freedoms (kHeld: at rest), moved and turned
+  /// so that the member, which bends no more in hinges, is bent as before.
+  struct BegunTip {
+    std::size_t tip = 0, from = 0;
+    Vec3 moved, turned;
+  };
+  std::vector<BegunTip> begun_tips();  ///< since the last call
+  /// Brings free ends into balance with the other displacements under these loads.
+  void rest_tips(std::span<double> u, const FrameLoads& loads) const;
   /// The first of a node's six; kHeld: a support.
   std::size_t freedom(std::uint32_t node) const;
   static constexpr std::size_t kHeld = static_cast<std::size_t>(-1);

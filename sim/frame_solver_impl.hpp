@@ -48,7 +48,8 @@ struct FrameSolver::Impl {
     double mass = 0, polar = 0;  ///< its own, kg/m and kg m
     double plate_mass = 0;       ///< of slabs and walls, kg/m
     Role role = Role::loose;
-    int held_end = 0;                                 ///< of a hanging one
+    int held_end = 0;                                 ///< of a hanging one, or with a tip
+    bool tip = false;                                 ///< elastic, its free end moves on its own
     std::array<std::uint32_t, 2> node{kNone, kNone};  ///< solver nodes; FrameLinks' kFixed, kFree
     Vec3 at(double along) const { return start + along * response.axes.x; }
     bool present() const { return role == Role::elastic || role == Role::hanging; }
@@ -88,6 +89,12 @@ struct FrameSolver::Impl {
     double mass = 0;
     Vec3 centre;
     SymMat3 inertia;  ///< about the centre, world
+  };
+  /// The free end of a member in time: what is condensed out of the matrix, and its mass; couplings
+  /// are rows of the held end.
+  struct Tip {
+    std::uint32_t member = 0, node = kNone;  ///< the held end's solver node; kFixed
+    Matrix6 inverse{}, coupling{}, mass{}, mass_coupling{};
   };
   /// Springs against a motion that nothing resists.
   struct Restraint {
@@ -129,6 +136,14 @@ struct FrameSolver::Impl {
   void set_in_factor(BlockChange& now, const BlockChange& next);
   void renew_diaphragm(std::uint32_t slab);
   std::string where(std::uint32_t node) const;
+
+  // frame_tips.cpp: members in time that one end let go of.
+  /// Its solver node.
+  std::uint32_t tip_of(std::uint32_t m) const { return links.node_count() + m; }
+  Matrix12 condense_tip(std::uint32_t m, const Matrix12& matrix, const Matrix12& mass);
+  void begin_tip(std::uint32_t m, std::uint32_t from);
+  void add_mass_of_tips(std::span<const double> x, std::span<double> y) const;
+  void solve_with_tips(std::span<const double> f, std::span<double> x) const;
 
   // frame_changes.cpp: what changes as joints break.
   void update(std::vector<std::uint32_t> members, std::vector<std::uint32_t> plates);
@@ -259,6 +274,8 @@ struct FrameSolver::Impl {
   std::vector<std::uint32_t> bent_of;                ///< per member; kNone: it has none
   std::vector<Twelve> height_rows;                   ///< of a metre's mass on a member, if known
   std::vector<std::uint8_t> height_known;            ///< per member, since it was renewed
+  std::vector<Tip> tips;                             ///< by member
+  std::vector<BegunTip> begun;                       ///< not yet told of
   std::vector<double> axial_in_factor;               ///< N, of the geometric stiffness
   std::vector<PlateSupport> plates;
   std::vector<std::vector<std::uint32_t>> plates_on;  ///< per member

@@ -87,7 +87,7 @@ Vec3 FrameSolver::Impl::pull_at(std::uint32_t m, Vec3 point) const {
 /// member, with the same resultant.
 bool FrameSolver::Impl::find_span(std::uint32_t m, MemberSpan& span) {
   const Member& member = members[m];
-  if (member.role != Role::elastic) return false;
+  if (member.role != Role::elastic || member.tip) return false;
   const Axes& axes = member.response.axes;
   const Vec3 force = three(forces[m], 0), moment = three(forces[m], 3);
   span.length = member.response.length;

@@ -209,13 +209,24 @@ FrameSolver::Impl::Role FrameSolver::Impl::role_of(std::uint32_t m, int& held_en
 void FrameSolver::Impl::renew(std::uint32_t m) {
   Member& member = members[m];
   height_known[m] = 0;
+  const std::array<std::uint32_t, 2> was = member.node;
+  const bool had_tip = member.tip;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::uint32_t node = links.end(m, static_cast<int>(i)).node;
     for (const std::uint32_t n : {member.node[i], node})
-      if (n < kFixed) to_restrain[n] = 1;
+      if (n < links.node_count()) to_restrain[n] = 1;
     member.node[i] = node;
   }
   member.role = role_of(m, member.held_end);
+  member.tip = params.tips && member.role == Role::hanging;
+  if (member.tip) {
+    const std::size_t free_end = 1 - static_cast<std::size_t>(member.held_end);
+    member.role = Role::elastic;
+    member.node[free_end] = tip_of(m);
+    if (!had_tip) begin_tip(m, was[free_end]);
+  } else if (had_tip) {
+    std::erase_if(tips, [m](const Tip& tip) { return tip.member == m; });
+  }
   if (member.role != Role::elastic) {
     bend(m);
     return;
@@ -300,14 +311,16 @@ void FrameSolver::Impl::renew_in_factor(std::uint32_t m) {
     for (double& value : matrix.at) value *= params.stiffness;
   } else {
     axial_in_factor[m] = 0;
-    node[1 - static_cast<std::size_t>(member.held_end)] = kFree;
   }
+  if (member.role != Role::elastic || member.tip)
+    node[1 - static_cast<std::size_t>(member.held_end)] = kFree;
   const bool massive = params.mass != 0 && member.present();
   BlockChange own{kNone, kNone, {}};
   if (massive) {
     const Matrix12 its_mass = mass_matrix(m);
     for (std::size_t i = 0; i < 144; ++i) matrix.at[i] += params.mass * its_mass.at[i];
     own = between(node, its_mass);
+    if (member.tip) matrix = condense_tip(m, matrix, its_mass);
   }
   if (masses) set_mass(m, own);
   const bool takes_part = member.role == Role::elastic || massive;

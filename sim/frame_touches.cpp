@@ -9,6 +9,8 @@ namespace sunder {
 namespace {
 
 constexpr double kNoForce = 1;  // N: contacts below it are over
+/// Of the load time: what is left of a piece gives way so fast.
+constexpr double kGivesWay = 0.25;
 
 }  // namespace
 
@@ -33,12 +35,19 @@ std::vector<std::uint32_t> FrameTouches::end_step(double dt, double load_time, d
     if (touch.size > 0) touch.point = (1 / touch.size) * touch.weighted;
     touch.owed = touch.owed + touch.impulse - (last_dt_ / 2) * (touch.before + touch.force);
     touch.before = touch.force;
-    const Vec3 force = touch.force + share * ((1 / dt) * touch.impulse - touch.force);
+    const Vec3 whole = touch.force + touch.held_back;
+    Vec3 force = whole + share * ((1 / dt) * touch.impulse - whole);
+    if (touch.held_back != Vec3{}) {
+      const double stays = kGivesWay * load_time / (dt + kGivesWay * load_time);
+      touch.held_back = stays * (force - touch.force);
+      if (length(touch.held_back) < max_error * length(force)) touch.held_back = {};
+      force = force - touch.held_back;
+    }
     const double change = length(force - touch.force);
     if (change > max_error * std::max(length(touch.force), kNoForce)) changed.push_back(part);
     touch.force = force;
     touch.borne = 1;
-    touch.is_active = length(force) > kNoForce;
+    touch.is_active = std::max(length(force), length(touch.held_back)) > kNoForce;
     if (!touch.is_active) touch.approach = 0, touch.owed = {}, touch.striker = kNoBody;
     touch.impulse = touch.weighted = {};
     touch.size = 0;
@@ -68,6 +77,12 @@ void FrameTouches::limit(std::uint32_t part, double share) {
   list_active();
 }
 
+void FrameTouches::hold_back(std::uint32_t part, double share) {
+  FrameTouch& touch = of_[part];
+  touch.held_back = touch.held_back + (1 - share) * touch.force;
+  touch.force = share * touch.force;
+}
+
 Vec3 FrameTouches::end(std::uint32_t part) {
   const Vec3 back = owed(part, 1);
   forget(part);
@@ -90,6 +105,7 @@ void FrameTouches::divide(std::uint32_t part, std::uint32_t new_part, double sha
     touch.size = by * old.size;
     touch.weighted = by * old.weighted;
     touch.force = by * old.force;
+    touch.held_back = by * old.held_back;
     touch.before = by * old.before;
     touch.owed = by * old.owed;
     return touch;

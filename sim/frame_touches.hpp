@@ -20,6 +20,7 @@ struct FrameTouch {
   Vec3 before;          ///< the force at the end of the step before
   Vec3 owed;            ///< impulse that was taken and is not yet passed on, before the last step
   double borne = 1;     ///< share of the blow that the frame could take
+  Vec3 held_back;       ///< force that has not reached what is left of a piece, see hold_back()
   BodyId striker = kNoBody;  ///< a projectile
   bool is_active = false;
 };
@@ -47,6 +48,9 @@ class FrameTouches {
   }
   /// Of what struck the part in the last step it took but this share.
   void limit(std::uint32_t part, double share);
+  /// Something parted in the piece that the part is in, and bore this share of the force: the rest
+  /// comes on what is left of it by a lag of a quarter of the load time.
+  void hold_back(std::uint32_t part, double share);
   /// Nothing touches it any more. Returns the impulse that was not passed on.
   Vec3 end(std::uint32_t part);
   void forget(std::uint32_t part);

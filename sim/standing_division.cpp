@@ -37,6 +37,7 @@ void StandingFrame::begin_divisions(std::span<const MemberCut> cuts) {
   undivided_.in_time = in_time();
   undivided_.hinges = stiff_hinges();
   if (!undivided_.in_time) return;
+  undivided_.nodes = in_use().freedoms() - 6 * frame_.members.size();
   using OnMember = FrameSolver::OnMember;
   for (const MemberCut& cut : cuts) {
     undivided_.u.push_back(in_use().motion_within(cut.member, cut.at, u_, OnMember::weight));
@@ -56,6 +57,8 @@ void StandingFrame::end_divisions(std::uint32_t count, std::span<const std::uint
     ahead_ = {};
     stops_ = false;
   }
+  const std::vector<TipState> tips =
+      undivided_.in_time ? tips_of(*dynamic_.frame, u_, v_) : std::vector<TipState>();
   for (auto& [part, mass] : masses_) part = moved_up(part, first, members_since_);
   for (Panel& panel : panels_)
     panel.element.part = moved_up(panel.element.part, first, members_since_);
@@ -76,8 +79,9 @@ void StandingFrame::end_divisions(std::uint32_t count, std::span<const std::uint
   wake();
   quiet_for_ = quiet_for;
   // Nodes that there were keep their places: those that came in are the last.
-  std::ranges::copy(u, u_.begin());
-  std::ranges::copy(v, v_.begin());
+  std::copy_n(u.begin(), undivided_.nodes, u_.begin());
+  std::copy_n(v.begin(), undivided_.nodes, v_.begin());
+  take_tips(tips);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto at = static_cast<long>(dynamic_.frame->freedom(nodes[i]));
     std::ranges::copy(undivided_.u[i], u_.begin() + at);

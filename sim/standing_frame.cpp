@@ -28,6 +28,7 @@ StandingFrame::Factored StandingFrame::factored_in_time() const {
 FrameSolverParams StandingFrame::dynamic_params() const {
   FrameSolverParams params = static_params();
   params.p_delta = false;
+  params.tips = true;
   const Factored factored = factored_in_time();
   params.stiffness = factored.stiffness;
   params.mass = factored.mass;
@@ -281,6 +282,34 @@ void StandingFrame::take_out(std::span<const std::uint32_t> joints,
   broken_.insert(broken_.end(), joints.begin(), joints.end());
   for (const std::uint32_t part : parts) gone_.push_back(known_part(part));
   bring_up_to_date(in_time() ? dynamic_ : static_);
+  if (in_time()) begin_tips();
+}
+
+/// Ends that let go move on from where they are, as they did.
+void StandingFrame::begin_tips() {
+  for (const FrameSolver::BegunTip& begun : dynamic_.frame->begun_tips()) {
+    const auto tip = static_cast<long>(begun.tip), from = static_cast<long>(begun.from);
+    const bool stood = begun.from == FrameSolver::kHeld;
+    for (std::vector<double>* each : {&u_, &v_}) {
+      std::fill_n(each->begin() + tip, 6, 0.0);
+      if (!stood) std::copy_n(each->begin() + from, 6, each->begin() + tip);
+    }
+    const Vec3 more[2] = {begun.moved, begun.turned};
+    for (std::size_t i = 0; i < 2; ++i) {
+      u_[begun.tip + 3 * i] += more[i].x;
+      u_[begun.tip + 3 * i + 1] += more[i].y;
+      u_[begun.tip + 3 * i + 2] += more[i].z;
+    }
+  }
+  is_momentum_known_ = false;
+}
+
+/// Of the static solver's displacements, whose free ends are rigid arms.
+std::vector<double> StandingFrame::with_tips(std::span<const double> nodes) const {
+  std::vector<double> all(dynamic_.frame->freedoms(), 0);
+  std::ranges::copy(nodes, all.begin());
+  dynamic_.frame->rest_tips(all, loads());
+  return all;
 }
 
 std::vector<std::uint32_t> StandingFrame::known_parts(std::span<const std::uint32_t> parts) const {
@@ -373,7 +402,41 @@ void StandingFrame::take_state(const FrameSolver& old, const std::vector<double>
     std::copy_n(u.data() + from, 6, u_.data() + to);
     std::copy_n(v.data() + from, 6, v_.data() + to);
   }
+  take_tips(tips_of(old, u, v));
   stand_on();
+}
+
+std::vector<StandingFrame::TipState> StandingFrame::tips_of(const FrameSolver& solver,
+                                                            const std::vector<double>& u,
+                                                            const std::vector<double>& v) const {
+  std::vector<TipState> tips;
+  for (std::uint32_t m = 0; m < frame_.members.size(); ++m) {
+    const std::size_t at = solver.freedom_of_tip(m);
+    if (at == FrameSolver::kHeld) continue;
+    TipState& tip = tips.emplace_back();
+    tip.member = m;
+    std::copy_n(u.data() + at, 6, tip.u.begin());
+    std::copy_n(v.data() + at, 6, tip.v.begin());
+  }
+  return tips;
+}
+
+void StandingFrame::take_tips(const std::vector<TipState>& tips) {
+  for (const TipState& tip : tips) {
+    std::uint32_t member = tip.member;
+    if (dynamic_.frame->freedom_of_tip(member) == FrameSolver::kHeld) {  // it divided
+      const auto is_rest = [node = frame_.members[member].to](const FrameMember& other) {
+        return other.from == node;
+      };
+      const auto rest = std::ranges::find_if(frame_.members, is_rest);
+      member = static_cast<std::uint32_t>(rest - frame_.members.begin());
+      if (rest == frame_.members.end()) continue;
+    }
+    const std::size_t at = dynamic_.frame->freedom_of_tip(member);
+    if (at == FrameSolver::kHeld) continue;
+    std::ranges::copy(tip.u, u_.data() + at);
+    std::ranges::copy(tip.v, v_.data() + at);
+  }
 }
 
 // ---- energy

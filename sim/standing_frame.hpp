@@ -62,7 +62,6 @@ class StandingFrame {
   void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
   /// Other stiffnesses of some that were set. Then carry_on().
   void change_panels(std::span<const PanelStiffness> changed);
-  void stop_turning(std::uint32_t node);
   void carry_on();  ///< in time displacements are continuous, else there is a new balance
   void stand_on();  ///< in time: forces follow the displacements and contacts anew
   /// The frame's joints have other parts: solvers are made anew, the state is the same.
@@ -98,6 +97,11 @@ class StandingFrame {
     Vec3 velocity, spin;
   };
   Motion motion(std::uint32_t node) const;
+  /// Of the free end of a member that hangs on the other one; in time.
+  struct TipMotion {
+    Vec3 displacement, velocity;
+  };
+  std::optional<TipMotion> tip(std::uint32_t member) const;
   /// Of these parts; of displacements with live loads, of velocities (in time) without.
   std::vector<FrameSolver::MassWay> ways(std::span<const std::uint32_t> parts) const;
   std::vector<FrameSolver::MassWay> speeds(std::span<const std::uint32_t> parts) const;
@@ -139,6 +143,11 @@ class StandingFrame {
     std::vector<Hinge> hinges;
     bool in_time = false;
     std::vector<Six> u, v;  ///< of the places where they divide
+    std::size_t nodes = 0;  ///< freedoms of nodes
+  };
+  struct TipState {
+    std::uint32_t member = 0;
+    Six u{}, v{};
   };
   FrameSolver& in_use() const { return in_time() ? *dynamic_.frame : *static_.frame; }
   /// Books are kept in the dynamic solver from the first time that the frame rings.
@@ -149,6 +158,11 @@ class StandingFrame {
   Vec3 gravity() const;
   void bring_up_to_date(Solver& solver) const;
   void tell_all(Solver& solver) const;
+  void begin_tips();
+  std::vector<double> with_tips(std::span<const double> nodes) const;
+  std::vector<TipState> tips_of(const FrameSolver& solver, const std::vector<double>& u,
+                                const std::vector<double>& v) const;
+  void take_tips(const std::vector<TipState>& tips);
   void solve_static();
   void solve_anew();
   void balance();

@@ -29,8 +29,8 @@ void StandingFrame::wake() {
   if (!dynamic_.frame) make_dynamic();
   bring_up_to_date(dynamic_);
   has_rung_ = true;
-  const std::span<const double> rest = static_.frame->displacements();
-  u_.assign(rest.begin(), rest.end());
+  dynamic_.frame->begun_tips();  // they have been at rest
+  u_ = with_tips(static_.frame->displacements());
   std::ranges::fill(v_, 0.0);
   stand_on();
 }
@@ -169,7 +169,8 @@ void StandingFrame::fall_quiet(double dt) {
   }
   rings_ = false;
   solve_static();
-  if (has_rung_) dynamic_.frame->set_displacements(static_.frame->displacements(), loads());
+  if (has_rung_)
+    dynamic_.frame->set_displacements(with_tips(static_.frame->displacements()), loads());
   losses_.damping += before - energy();
 }
 
@@ -190,10 +191,11 @@ StandingFrame::Motion StandingFrame::motion(std::uint32_t node) const {
   return {{v_[first], v_[first + 1], v_[first + 2]}, {v_[first + 3], v_[first + 4], v_[first + 5]}};
 }
 
-void StandingFrame::stop_turning(std::uint32_t node) {
-  const std::size_t first = dynamic_.frame->freedom(node);
-  is_momentum_known_ = false;
-  if (first != FrameSolver::kHeld) std::fill_n(v_.begin() + static_cast<long>(first) + 3, 3, 0);
+std::optional<StandingFrame::TipMotion> StandingFrame::tip(std::uint32_t member) const {
+  if (!in_time() || member >= frame_.slab_part(0)) return {};
+  const std::size_t at = dynamic_.frame->freedom_of_tip(member);
+  if (at == FrameSolver::kHeld) return {};
+  return TipMotion{{u_[at], u_[at + 1], u_[at + 2]}, {v_[at], v_[at + 1], v_[at + 2]}};
 }
 
 }  // namespace sunder

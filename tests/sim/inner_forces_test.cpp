@@ -141,6 +141,26 @@ TEST(FrameTouches, ForceFollowsImpulsesByItsLag) {
   EXPECT_EQ(left, std::ceil(std::log(kForce) / std::log(1 + kStep / kLag)));  // to 1 N
 }
 
+// A push that stays: a tenth of it is borne, and the rest comes with a quarter of the lag.
+TEST(FrameTouches, WhatIsHeldBackComesByAndBy) {
+  constexpr double kStep = 0.005, kLag = 0.02, kForce = 1e3;
+  FrameTouches touches(1);
+  const auto push = [&] {
+    touches.add(0, {}, {kForce * kStep, 0, 0}, 0);
+    touches.end_step(kStep, kLag, 1e-6);
+    return touches.load_on(0).force.x;
+  };
+  for (int step = 0; step < 200; ++step) push();
+  EXPECT_NEAR(touches.load_on(0).force.x, kForce, 1e-9 * kForce);
+  touches.hold_back(0, 0.1);
+  EXPECT_NEAR(touches.load_on(0).force.x, 0.1 * kForce, 1e-9 * kForce);
+  double missing = 0.9;
+  for (int step = 0; step < 12; ++step) {
+    missing /= 1 + kStep / (kLag / 4);
+    EXPECT_NEAR(push(), (1 - missing) * kForce, 1e-9 * kForce) << step;
+  }
+}
+
 TEST(FrameTouches, WhatIsForgottenPressesNoMore) {
   FrameTouches touches(3);
   for (const std::uint32_t part : {2u, 0u}) touches.add(part, {}, {100, 0, 0}, 1);
