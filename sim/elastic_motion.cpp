@@ -106,24 +106,6 @@ bool ElasticMotion::settle_hinges() {
   return true;
 }
 
-/// A member that lost one end hangs on the other as a rigid arm, whose inertia is far above what
-/// turned at that node before: next to nothing of its angular momentum is left as speed.
-void ElasticMotion::stop_turning(std::span<const std::uint32_t> joints) {
-  const auto is_held = [&](std::uint32_t part, std::uint32_t node) {
-    return std::ranges::any_of(links_.joints_of(part), [&](std::uint32_t j) {
-      return frame_.joints[j].node == node && links_.intact(j);
-    });
-  };
-  for (const std::uint32_t j : joints) {
-    for (const std::uint32_t part : {frame_.joints[j].a, frame_.joints[j].b}) {
-      if (part >= frame_.members.size() || !bodies_.stands(part)) continue;
-      const FrameMember& member = frame_.members[part];
-      if (is_held(part, member.from) == is_held(part, member.to)) continue;
-      standing_.stop_turning(is_held(part, member.from) ? member.from : member.to);
-    }
-  }
-}
-
 double ElasticMotion::energy() const {
   return standing_.kinetic() + standing_.strain() + potential() + world_.kinetic_energy();
 }
@@ -186,7 +168,6 @@ bool ElasticMotion::settle_breaks() {
     });
     standing_.take_out(of_standing, released);
     keep_places();
-    if (standing_.in_time()) stop_turning(broken_);
     standing_.carry_on();
   }
   part_bodies();

@@ -85,7 +85,6 @@ class ElasticMotion final : public FrameMotion {
   void link_again();
   void part_bodies();
   bool settle_hinges();
-  void stop_turning(std::span<const std::uint32_t> joints);
   std::vector<std::uint32_t> release_loose(double& lowered);
 
   // elastic_division.cpp: members in two parts.

@@ -275,8 +275,11 @@ void FrameSolver::Impl::break_joints(std::span<const std::uint32_t> joints) {
   std::vector<std::uint32_t> touched, touched_plates;
   for (const std::uint32_t j : joints) {
     if (!links.intact(j)) continue;
+    const std::uint32_t node = frame.joints[j].node;
+    const std::vector<FrameLinks::End> ends = ends_at(node);
     links.cut(j);
-    if (const std::uint32_t node = frame.joints[j].node; node != kNoPart) {
+    if (node != kNoPart) {
+      note_parted(node, ends);
       for (const std::uint32_t end : links.ends_at(node)) touched.push_back(end / 2);
     } else {
       touched_plates.push_back(frame.joints[j].a - frame.slab_part(0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -176,6 +177,16 @@ class FrameSolver {
   void stiffness_times(std::span<const double> u, std::span<double> f) const;  ///< K u
   void mass_times(std::span<const double> a, std::span<double> f) const;  ///< M a, all loads' mass
   void solve_system(std::span<const double> f, std::span<double> u) const;  ///< factored matrix
+  /// Nodes that moved as one until breaks since this was asked last: the displacements of both are
+  /// what they were; so shall be other motions.
+  using Parted = std::vector<std::array<std::uint32_t, 2>>;
+  Parted take_parted();
+  static void part_motion(const Parted& parted, std::span<double> motion);
+  /// With mass in the matrix. Velocities after breaks: parts that the model carries in another way
+  /// now (`before`: their ways of the velocities until then) keep their momentum and angular
+  /// momentum, as rigid bodies that are joined to what carries them without bouncing back. So
+  /// kinetic energy does not grow.
+  void keep_momentum(std::span<const MassWay> before, std::span<double> v) const;
 
  private:
   struct Impl;

@@ -89,6 +89,10 @@ struct FrameSolver::Impl {
     Vec3 centre;
     SymMat3 inertia;  ///< about the centre, world
   };
+  /// Velocities of a rigid motion.
+  struct RigidField {
+    Vec3 centre, velocity, spin;
+  };
   /// Springs against a motion that nothing resists.
   struct Restraint {
     std::uint32_t node = kNone;
@@ -122,6 +126,8 @@ struct FrameSolver::Impl {
   void make_masses(const FrameLinks::Edges& edges);
   Role role_of(std::uint32_t m, int& held_end) const;
   Matrix12 mass_matrix(std::uint32_t m) const;
+  Matrix12 mass_matrix(std::uint32_t m, const BeamElement& element,
+                       std::span<const PointMass> heavy) const;
   void renew(std::uint32_t m);  ///< role, element, stiffness from the links
   void renew_in_factor(std::uint32_t m);
   void set_mass(std::uint32_t m, const BlockChange& next);
@@ -161,6 +167,15 @@ struct FrameSolver::Impl {
   static std::array<Twelve, 3> by_axis(const Held& held_nodes);
   std::vector<MassWay> mass_ways(std::span<const double> motion, const std::vector<double>& live,
                                  bool bends) const;
+
+  // frame_momentum.cpp: what breaks leave of motion.
+  std::vector<FrameLinks::End> ends_at(std::uint32_t frame_node) const;
+  void note_parted(std::uint32_t frame_node, const std::vector<FrameLinks::End>& were);
+  void add_missing(std::uint32_t m, const Matrix12& mass, const RigidField& field,
+                   std::span<const double> v, std::span<double> missing) const;
+  void add_missing(std::uint32_t part, const RigidField& field, std::span<const double> v,
+                   std::span<double> missing) const;
+  void keep_momentum(std::span<const MassWay> until, std::span<double> v) const;
 
   // frame_panels.cpp: slabs and walls that are elastic.
   void add_panel_edges(FrameLinks::Edges& edges) const;
@@ -258,6 +273,8 @@ struct FrameSolver::Impl {
   std::vector<std::uint32_t> piece_of_node;           ///< kNone: on the ground
   std::vector<Piece> pieces;
   std::vector<std::uint32_t> idle;         ///< solver nodes without members, ascending
+  /// Solver nodes that came into use since part_motion(), and what they moved with before.
+  std::vector<std::array<std::uint32_t, 2>> parted;
   std::vector<std::uint32_t> pinned;       ///< solver nodes, ascending
   std::vector<Restraint> rotations, held;  ///< held: where a pivot vanished
   double pin_stiffness = 0, pin_turn = 0;  ///< N/m, N m/rad

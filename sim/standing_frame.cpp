@@ -196,6 +196,7 @@ void StandingFrame::tell_all(Solver& solver) const {
   solver.joints = broken_.size();
   solver.parts = gone_.size();
   bring_up_to_date(solver);
+  solver.frame->take_parted();
 }
 
 /// With the hinges that are left to it.
@@ -280,7 +281,13 @@ void StandingFrame::take_out(std::span<const std::uint32_t> joints,
                              std::span<const std::uint32_t> parts) {
   broken_.insert(broken_.end(), joints.begin(), joints.end());
   for (const std::uint32_t part : parts) gone_.push_back(known_part(part));
-  bring_up_to_date(in_time() ? dynamic_ : static_);
+  if (!in_time()) return bring_up_to_date(static_);
+  const std::vector<FrameSolver::MassWay> before = dynamic_.frame->ways_of(v_);
+  bring_up_to_date(dynamic_);
+  const FrameSolver::Parted parted = dynamic_.frame->take_parted();
+  FrameSolver::part_motion(parted, u_);
+  FrameSolver::part_motion(parted, v_);
+  dynamic_.frame->keep_momentum(before, v_);
 }
 
 /// By the scene's numbers: members that came in where nothing stands have no way.

@@ -62,7 +62,6 @@ class StandingFrame {
   void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
   /// Other stiffnesses of some that were set. Then carry_on().
   void change_panels(std::span<const PanelStiffness> changed);
-  void stop_turning(std::uint32_t node);
   void carry_on();  ///< in time displacements are continuous, else there is a new balance
   void stand_on();  ///< in time: forces follow the displacements and contacts anew
   /// The frame's joints have other parts: solvers are made anew, the state is the same.

@@ -28,6 +28,7 @@ void StandingFrame::wake() {
   if (rang || scene_.simulation.quasi_static) return;
   if (!dynamic_.frame) make_dynamic();
   bring_up_to_date(dynamic_);
+  dynamic_.frame->take_parted();  // they move as at rest
   has_rung_ = true;
   const std::span<const double> rest = static_.frame->displacements();
   u_.assign(rest.begin(), rest.end());
@@ -188,12 +189,6 @@ StandingFrame::Motion StandingFrame::motion(std::uint32_t node) const {
   const std::size_t first = dynamic_.frame->freedom(node);
   if (first == FrameSolver::kHeld) return {};
   return {{v_[first], v_[first + 1], v_[first + 2]}, {v_[first + 3], v_[first + 4], v_[first + 5]}};
-}
-
-void StandingFrame::stop_turning(std::uint32_t node) {
-  const std::size_t first = dynamic_.frame->freedom(node);
-  is_momentum_known_ = false;
-  if (first != FrameSolver::kHeld) std::fill_n(v_.begin() + static_cast<long>(first) + 3, 3, 0);
 }
 
 }  // namespace sunder
