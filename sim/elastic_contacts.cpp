@@ -163,12 +163,7 @@ Vec3 ElasticMotion::give_back(std::uint32_t part, double share) {
   if (standing_.can_step_again()) standing_.step_again();
   const Vec3 back = touches_.end(part);
   press();
-  if (standing_.in_time()) {
-    // Hinges that flow turn back at once where nothing presses any more.
-    const double before = standing_.bends() ? standing_.energy() : 0;
-    standing_.stand_on();
-    if (standing_.bends()) fracture_ += before - standing_.energy();
-  }
+  if (standing_.in_time()) standing_.carry_on();
   return back;
 }
 

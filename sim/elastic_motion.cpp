@@ -110,6 +110,11 @@ double ElasticMotion::energy() const {
   return standing_.kinetic() + standing_.strain() + potential() + world_.kinetic_energy();
 }
 
+/// With what went into plastic hinges.
+double ElasticMotion::unspent() const {
+  return energy() + standing_.losses().plastic;
+}
+
 double ElasticMotion::potential() const {
   double moment = 0;
   for (std::uint32_t part = 0; part < offsets_.size(); ++part)
@@ -150,7 +155,7 @@ bool ElasticMotion::settle_breaks() {
   std::ranges::sort(in_pieces);
   in_pieces.erase(std::ranges::unique(in_pieces).begin(), in_pieces.end());
   const bool is_struck = !of_standing.empty();
-  const double before = is_struck ? energy() : world_.kinetic_energy();
+  const double before = is_struck ? unspent() : world_.kinetic_energy();
   if (is_struck) standing_.wake();
   const std::size_t first_new = bodies_.pieces().size();
   if (is_struck) note_places();
@@ -172,7 +177,7 @@ bool ElasticMotion::settle_breaks() {
   }
   part_bodies();
   inner_.start(first_new, in_pieces, broken_, touches_);
-  fracture_ += before - (is_struck ? energy() + lowered : world_.kinetic_energy());
+  fracture_ += before - (is_struck ? unspent() + lowered : world_.kinetic_energy());
   broken_.clear();
   return true;
 }
@@ -238,29 +243,29 @@ BodyId ElasticMotion::give_up_shape(std::uint32_t part) {
 /// The frame springs back where it is lighter.
 void ElasticMotion::set_mass(std::uint32_t part, double mass) {
   standing_.wake();
-  const double before = energy();
+  const double before = unspent();
   bodies_.set_mass(part, mass);
   standing_.set_plate_mass(part, mass);
   standing_.carry_on();
-  fracture_ += before - energy();
+  fracture_ += before - unspent();
 }
 
 /// What their cracked parts had stored is gone.
 void ElasticMotion::change_panels(std::span<const PanelStiffness> changed) {
   standing_.wake();
-  const double before = energy();
+  const double before = unspent();
   standing_.change_panels(changed);
   standing_.carry_on();
-  fracture_ += before - energy();
+  fracture_ += before - unspent();
 }
 
 /// Free pieces grow heavier too.
 void ElasticMotion::add_load(double more) {
   standing_.wake();
-  const double before = energy(), plastic = standing_.losses().plastic;
+  const double before = unspent();
   bodies_.add_live(more);
   standing_.add_live(more);
-  given_ += energy() + standing_.losses().plastic - plastic - before;
+  given_ += unspent() - before;
 }
 
 // ---- what is told

@@ -82,6 +82,7 @@ class ElasticMotion final : public FrameMotion {
  private:
   // elastic_motion.cpp
   double energy() const;  ///< of frame and bodies, J
+  double unspent() const;
   void link_again();
   void part_bodies();
   bool settle_hinges();

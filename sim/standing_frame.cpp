@@ -329,7 +329,7 @@ void StandingFrame::carry_on() {
     solve_static();
     pushed_ = touching();
   }
-  hinges_ = in_use().hinges();
+  keep_turned();
   is_live_ = true;
 }
 

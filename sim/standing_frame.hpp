@@ -62,8 +62,9 @@ class StandingFrame {
   void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
   /// Other stiffnesses of some that were set. Then carry_on().
   void change_panels(std::span<const PanelStiffness> changed);
-  void carry_on();  ///< in time displacements are continuous, else there is a new balance
-  void stand_on();  ///< in time: forces follow the displacements and contacts anew
+  /// In time displacements are continuous, else there is a new balance. What hinges turn then is
+  /// plastic work.
+  void carry_on();
   /// The frame's joints have other parts: solvers are made anew, the state is the same.
   void rejoin();
   // Members divide: standing_division.cpp.
@@ -164,6 +165,7 @@ class StandingFrame {
   std::vector<FrameSolver::MassWay> by_part(std::vector<FrameSolver::MassWay> ways) const;
   void move_on();
   void find_momentum() const;
+  void stand_on();
   void account_for_damping();
   void note_residual(const std::vector<double>& mass_way, const std::vector<double>& spring_way);
   void take_state(const FrameSolver& old, const std::vector<double>& u,
@@ -172,6 +174,8 @@ class StandingFrame {
   std::vector<Hinge> stiff_hinges() const;
   std::vector<Hinge> turned_back(const std::vector<Hinge>& now) const;
   void follow_hinges();
+  double take_turns();
+  void keep_turned();
   bool turn_endlessly(const std::vector<Hinge>& hinges) const;
   void hold_hinges(std::vector<Hinge> hinges);
 

@@ -105,16 +105,30 @@ void StandingFrame::follow_step() {
 
 void StandingFrame::follow_hinges() {
   if (hinges_.empty()) return;
+  const double work = take_turns();
+  if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
+}
+
+/// Less has to be borne, or other ends bear it: what would turn back is stiff as it was.
+void StandingFrame::keep_turned() {
+  const std::vector<Hinge> left = in_use().hinges();
+  std::erase_if(hinges_, [&](const Hinge& hinge) {
+    return !std::ranges::binary_search(left, hinge.joint, {}, &Hinge::joint);
+  });
+  if (!hinges_.empty()) take_turns();
+}
+
+/// The work of what has turned, J, is plastic; what has turned back is stiff.
+double StandingFrame::take_turns() {
   const std::vector<Hinge> now = in_use().hinges();
   const std::vector<Hinge> stiff = turned_back(now);
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (!now[i].flows) continue;
-    const double work = dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
-    losses_.plastic += work;
-    if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
-  }
+  double work = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i].flows) work += dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+  losses_.plastic += work;
   hinges_ = now;
   if (!stiff.empty()) set_hinges(stiff);
+  return work;
 }
 
 }  // namespace sunder
