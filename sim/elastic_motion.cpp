@@ -3,6 +3,7 @@
 #include "sim/elastic_motion.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunder {
 namespace {
@@ -204,6 +205,37 @@ std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
   add(inner_.unheld());
   const std::vector<std::uint32_t> bridging = standing_.bridging_joints();
   joints.insert(joints.end(), bridging.begin(), bridging.end());
+  return joints;
+}
+
+/// What hangs on the ground without members that have turned too far goes on to stand, and with it
+/// the plates on it; plates hold nothing.
+std::vector<std::uint32_t> ElasticMotion::mechanism_joints() const {
+  std::vector<std::uint32_t> joints, queue;
+  const std::vector<std::uint32_t> turned = standing_.overturned();
+  if (turned.empty()) return joints;
+  std::vector<std::uint8_t> stays(frame_.part_count(), 0), turns(frame_.part_count(), 0);
+  for (const std::uint32_t member : turned) turns[member] = 1;
+  const auto reach = [&](std::uint32_t part) {
+    if (turns[part] || !bodies_.stands(part)) return;
+    if (!std::exchange(stays[part], 1) && part < frame_.members.size()) queue.push_back(part);
+  };
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j)
+    if (links_.intact(j) && frame_.joints[j].b == kNoPart) reach(frame_.joints[j].a);
+  while (!queue.empty()) {
+    const std::uint32_t part = queue.back();
+    queue.pop_back();
+    for (const std::uint32_t j : links_.joints_of(part)) {
+      const FrameJoint& joint = frame_.joints[j];
+      if (links_.intact(j) && joint.b != kNoPart) reach(joint.a == part ? joint.b : joint.a);
+    }
+  }
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
+    const FrameJoint& joint = frame_.joints[j];
+    if (!links_.intact(j) || !bodies_.stands(joint.a)) continue;
+    const bool carried = joint.b == kNoPart || stays[joint.b];
+    if (carried != static_cast<bool>(stays[joint.a])) joints.push_back(j);
+  }
   return joints;
 }
 

@@ -36,6 +36,7 @@ class ElasticMotion final : public FrameMotion {
   bool redistributes() const override { return true; }
   bool settle_breaks() override;
   std::vector<std::uint32_t> unheld_joints() const override;
+  std::vector<std::uint32_t> mechanism_joints() const override;
   void add_projectile(BodyId body, double mass) override { projectiles_.push_back({body, mass}); }
   double borne(std::uint32_t part) const override { return touches_[part].borne; }
   Vec3 give_back(std::uint32_t part, double share) override;

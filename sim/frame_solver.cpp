@@ -333,6 +333,11 @@ std::vector<std::uint32_t> FrameSolver::bridging_joints() const {
   return joints;
 }
 
+/// force += what it holds of the displacements.
+void FrameSolver::Impl::add_spring(const Restraint& spring, std::span<double> force) const {
+  add_product(spring.block, u, force);
+}
+
 std::vector<Mechanism> FrameSolver::mechanisms() const {
   std::vector<Mechanism> result;
   for (const Impl::Restraint& held : impl_->held)

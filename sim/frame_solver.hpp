@@ -125,6 +125,14 @@ class FrameSolver {
   /// Where what is left moved without resistance; springs hold it. The loads there mean nothing.
   std::vector<Mechanism> mechanisms() const;
 
+  /// Elastic members that turn or twist between their nodes by more than this, rad, or stretch by
+  /// this share; by the displacements now.
+  std::vector<std::uint32_t> turned_members(double limit) const;
+  /// The largest share of the way from other displacements to those now on which none does.
+  double share_within(std::span<const double> from, double limit) const;
+  /// Those that would turn if the springs of mechanisms() did not carry some of the loads.
+  std::vector<std::uint32_t> unresisted_members() const;
+
   /// Displacements, joint loads and reactions under these loads; refined (at most three times)
   /// while the residual falls and is above 1e-11 and what rounding of the displacements makes.
   void solve(const FrameLoads& loads);

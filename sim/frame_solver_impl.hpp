@@ -177,6 +177,9 @@ struct FrameSolver::Impl {
                    std::span<double> missing) const;
   void keep_momentum(std::span<const MassWay> until, std::span<double> v) const;
 
+  // frame_range.cpp: how far members turn.
+  double turn_at(std::uint32_t m, std::span<const double> motion) const;
+
   // frame_panels.cpp: slabs and walls that are elastic.
   void add_panel_edges(FrameLinks::Edges& edges) const;
   void make_panels();
@@ -242,6 +245,7 @@ struct FrameSolver::Impl {
   Vec3 diaphragm_shear(std::uint32_t joint) const;
   void add_diaphragms(std::span<const double> motion, std::span<double> result) const;
   void recover();
+  void add_spring(const Restraint& spring, std::span<double> force) const;
   double rest_of(std::span<const double> motion);
   void solve_refined();
   void iterate_second_order();

@@ -44,6 +44,7 @@ void CollapseRun::break_overloaded() {
   if (!breaks_) return give_way(broken_before, {});
   std::vector<Weak> weak = weak_members();
   if (motion_->redistributes()) keep_most_utilised(overloads, weak);
+  if (overloads.empty() && weak.empty()) add_mechanisms(failures);
   failures.insert(failures.end(), overloads.begin(), overloads.end());
   break_joints(std::move(failures));
   give_way(broken_before, weak);
@@ -62,10 +63,17 @@ void CollapseRun::cascade() {
     keep_most_utilised(failures, weak);
     for (const std::uint32_t j : motion_->unheld_joints())
       failures.push_back({j, joints_[j].utilisation, "unheld", "balance", {}, true});
+    if (failures.empty() && weak.empty()) add_mechanisms(failures);
     break_joints(std::move(failures));
     divided = !weak.empty();
     divide_members(weak);
   }
+}
+
+/// What moves without resistance, or has moved too far to stand, lets go of what stands.
+void CollapseRun::add_mechanisms(std::vector<Failure>& failures) const {
+  for (const std::uint32_t j : motion_->mechanism_joints())
+    failures.push_back({j, joints_[j].utilisation, "mechanism", "balance", {}, true});
 }
 
 /// Panels crack, joints take over what they bore, and so on. While the frame rings displacements

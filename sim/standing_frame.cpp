@@ -201,8 +201,11 @@ void StandingFrame::tell_all(Solver& solver) const {
 
 /// With the hinges that are left to it.
 void StandingFrame::solve_static() {
+  std::vector<double> from;
   try {
     bring_up_to_date(static_);
+    static_.frame->take_parted();
+    from.assign(static_.frame->displacements().begin(), static_.frame->displacements().end());
     if (has_rung_ && !hinges_.empty()) static_.frame->set_hinges(hinges_);
     static_.frame->solve(loads());
   } catch (const Error&) {
@@ -211,6 +214,7 @@ void StandingFrame::solve_static() {
   }
   residual_ = std::max(residual_, static_.frame->residual());
   is_live_ = true;
+  if (is_settled_ && scene_.simulation.quasi_static && scene_.rules.breaking) keep_in_range(from);
 }
 
 /// What the stiffness knows of axial forces may be from before something broke: from none. Second

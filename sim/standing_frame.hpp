@@ -78,11 +78,13 @@ class StandingFrame {
                      std::vector<FrameLoads::OnPart> contacts,
                      std::vector<std::uint32_t> not_standing);
   std::vector<std::uint32_t> loose_parts() const;
+  /// Members that have turned farther than small displacements mean: nothing that stands holds
+  /// them. Ascending.
+  std::vector<std::uint32_t> overturned() const;
   std::vector<std::uint32_t> bridging_joints() const { return in_use().bridging_joints(); }
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
-  bool bends() const { return !hinges_.empty(); }
   bool can_bend(std::uint32_t joint) const { return in_use().can_bend(joint); }
   void set_hinges(const std::vector<Hinge>& hinges);
 
@@ -147,6 +149,8 @@ class StandingFrame {
   void bring_up_to_date(Solver& solver) const;
   void tell_all(Solver& solver) const;
   void solve_static();
+  void keep_in_range(const std::vector<double>& from);
+  double share_for_hinges(const std::vector<double>& from);
   void solve_anew();
   void balance();
   FrameSolverParams static_params() const;
@@ -196,6 +200,7 @@ class StandingFrame {
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;  ///< by joint
+  std::vector<std::uint32_t> unresisted_;  ///< members that nothing held at the last balance
   /// When it rings: the last loads, and of them contacts and motion of the ground.
   FrameLoads laid_, pushed_, shaken_;
   Moment before_step_;
