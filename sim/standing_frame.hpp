@@ -49,7 +49,7 @@ class StandingFrame {
   void solve_step();
   void end_step();
   /// The last step can be done again with other contacts, from where it began.
-  bool can_step_again() const { return can_step_again_ && in_time(); }
+  bool can_step_again() const { return can_step_again_; }
   void step_again();
   /// Speed of the place that a contact touches, along its force; in time. What the force does on
   /// the frame is its work on that.
