@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -72,6 +73,10 @@ class Panels {
   std::uint64_t solves() const { return solves_; }                  ///< of panels' networks
   std::uint64_t solves_skipped() const { return solves_skipped_; }  ///< panels × steps
   std::uint64_t count() const { return panels_.size(); }
+  std::uint64_t meshed() const {  ///< of which the chunks were made
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(panels_, [](const Panel& panel) { return panel.made.has_value(); }));
+  }
   /// What became of them. Their walls join the recording, whose parts say which of these they are.
   ImpactResult finish(Recording& recording);
 
@@ -126,6 +131,7 @@ class Panels {
   double added_use(const Panel& panel, const PanelFreedoms& corners,
                    const PanelFreedoms& before) const;
   bool may_crack(std::uint32_t w);
+  bool is_settled(const Panel& panel, const PanelFreedoms& corners) const;
   void settle(std::uint32_t w);
   void break_bonds(std::uint32_t w, std::span<const BrokenBond> broken);
   bool has_lost_joint(const Panel& panel) const;
