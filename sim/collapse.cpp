@@ -101,6 +101,7 @@ void CollapseRun::add_panels() {
                          --present_parts_;
                          return track;
                        }});
+  motion_->when_released([this](BodyId body) { panels_->stand_before(body); });
 }
 
 /// A panel falls apart, or out of the frame.

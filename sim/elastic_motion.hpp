@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "fracture/support_graph.hpp"
@@ -47,6 +48,9 @@ class ElasticMotion final : public FrameMotion {
   void end_divisions(std::span<const MemberDivision> divisions) override;
   void remove_part(std::uint32_t part) override;
   void add_load(double more) override;
+  void when_released(std::function<void(BodyId)> tell) override {
+    bodies_.when_released(std::move(tell));
+  }
   bool stands(std::uint32_t part) const override { return bodies_.stands(part); }
   BodyId give_up_shape(std::uint32_t part) override;
   void take_shape(std::uint32_t part, BodyId body) override { bodies_.take_shape(part, body); }

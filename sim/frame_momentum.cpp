@@ -13,7 +13,7 @@ namespace sunder {
 namespace {
 
 constexpr std::uint32_t kFixed = FrameLinks::kFixed;
-constexpr double kSame = 1e-9;   // of momentum
+constexpr double kSame = 1e-9;    // of momentum
 constexpr double kLittle = 1e-9;  // of a line's inertia: it has none about itself
 
 double product(std::span<const double> a, std::span<const double> b) {

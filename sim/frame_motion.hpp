@@ -86,6 +86,8 @@ class FrameMotion {
   virtual void add_load(double more) = 0;
 
   // Slabs and walls that break into chunks of someone else's.
+  /// Told of every body that parts become, where it is then.
+  virtual void when_released(std::function<void(BodyId)>) {}
   /// Whether a part hangs on the ground and is not moved by the world.
   virtual bool stands(std::uint32_t part) const = 0;
   /// The collision shape of a part that stands is taken away, with what touched it; the part still

@@ -48,6 +48,8 @@ class Panels {
   void make_room(std::uint32_t first, std::uint32_t count);
   /// Time 0: from now on they are elastic, without stress but that of their weight.
   void start();
+  /// A body comes in: chunks that stand around it are there.
+  void stand_before(BodyId body) { walls_.raise_colliders_around(body); }
   // A substep: prepare, next_arrival, the world's step, after_step, arrive.
   /// The longest substep in which nothing passes through a panel.
   double prepare(double dt);

@@ -23,8 +23,7 @@ std::vector<std::uint32_t> StandingFrame::overturned() const {
 /// Share of the way at whose end the first hinge has turned by its capacity.
 double StandingFrame::share_for_hinges(const std::vector<double>& from) {
   const auto capacity = [&](const Hinge& hinge) {
-    return kBeyond *
-           frame_.classes[frame_.joints[hinge.joint].joint_class].rotation_capacity;
+    return kBeyond * frame_.classes[frame_.joints[hinge.joint].joint_class].rotation_capacity;
   };
   const std::vector<Hinge> to = static_.frame->hinges();
   if (std::ranges::none_of(to, [&](const Hinge& hinge) {
