@@ -163,7 +163,12 @@ Vec3 ElasticMotion::give_back(std::uint32_t part, double share) {
   if (standing_.can_step_again()) standing_.step_again();
   const Vec3 back = touches_.end(part);
   press();
-  if (standing_.in_time()) standing_.carry_on();
+  if (standing_.in_time()) {
+    // Hinges that flow turn on where less presses on the way between the ends.
+    const double before = standing_.bends() ? unspent() : 0;
+    standing_.carry_on();
+    if (standing_.bends()) fracture_ += before - unspent();
+  }
   return back;
 }
 

@@ -159,16 +159,19 @@ std::map<std::uint32_t, Vec3> CollapseRun::pressed_by(BodyId ball, Vec3& lost) c
   return struck;
 }
 
-/// By the utilisation at which its joints, or it itself, broke in this step; 1: none did.
+/// By the utilisation at which its joints, or it itself, broke in this step; 1: none did. In
+/// balance at any time the blow is on all of the frame at once.
 double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before,
                                 const std::vector<Weak>& weak) const {
+  const bool at_once = scene_.simulation.quasi_static;
   double most = 1;
   for (const Weak& each : weak)
-    if (each.member == part && is_brittle(each)) most = std::max(most, each.place.utilisation);
+    if ((at_once || each.member == part) && is_brittle(each))
+      most = std::max(most, each.place.utilisation);
   for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
     const JointBreak& broken = result_.broken_joints[i];
     const FrameJoint& joint = frame_.joints[broken.joint];
-    if (joint.a == part || joint.b == part) most = std::max(most, broken.utilisation);
+    if (at_once || joint.a == part || joint.b == part) most = std::max(most, broken.utilisation);
   }
   return 1 / most;
 }

@@ -202,6 +202,7 @@ void StandingFrame::tell_all(Solver& solver) const {
 /// With the hinges that are left to it.
 void StandingFrame::solve_static() {
   std::vector<double> from;
+  is_short_ = false;
   try {
     bring_up_to_date(static_);
     static_.frame->take_parted();
@@ -254,9 +255,11 @@ double StandingFrame::solve_pushed() {
   const auto work = [&] {
     return touched ? static_.frame->work_of(pushed_) + static_.frame->work_of(pushes) : 0;
   };
-  const double before = work();
+  const double before = work(), had = energy();
   solve_static();
-  const double given = (work() - before) / 2;
+  double given = (work() - before) / 2;
+  // Short of a balance it is pushed with no more force than it resists.
+  if (is_short_) given = std::min(given, std::max(0.0, energy() + turned_work() - had));
   if (touched) {
     const std::span<const double> found = static_.frame->displacements();
     static_.frame->set_displacements(std::vector<double>(found.begin(), found.end()), loads());
@@ -317,8 +320,8 @@ void StandingFrame::set_plate_mass(std::uint32_t part, double mass) {
 void StandingFrame::change_panels(std::span<const PanelStiffness> changed) {
   for (const PanelStiffness& each : changed) {
     const std::uint32_t known = known_part(each.part);
-    const auto panel = std::ranges::lower_bound(panels_, known, {},
-                                                [](const Panel& p) { return p.element.part; });
+    const auto panel =
+        std::ranges::lower_bound(panels_, known, {}, [](const Panel& p) { return p.element.part; });
     if (panel == panels_.end() || panel->element.part != known) continue;  // it lost an edge
     panel->element.stiffness = each.stiffness;
     ++panel->set;

@@ -85,6 +85,7 @@ class StandingFrame {
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
   const Hinge* hinge(std::uint32_t joint) const;  ///< nullptr: it is none
+  bool bends() const { return !hinges_.empty(); }
   bool can_bend(std::uint32_t joint) const { return in_use().can_bend(joint); }
   void set_hinges(const std::vector<Hinge>& hinges);
 
@@ -178,6 +179,7 @@ class StandingFrame {
   std::vector<Hinge> stiff_hinges() const;
   std::vector<Hinge> turned_back(const std::vector<Hinge>& now) const;
   void follow_hinges();
+  double turned_work() const;
   double take_turns();
   void keep_turned();
   bool turn_endlessly(const std::vector<Hinge>& hinges) const;
@@ -207,6 +209,7 @@ class StandingFrame {
   Undivided undivided_;
   bool rings_ = false, has_rung_ = false, is_live_ = false, can_step_again_ = false;
   bool is_settled_ = false, is_first_order_ = false;
+  bool is_short_ = false;  ///< the last balance was out of range: it went a part of the way
   double live_ = 0, now_ = 0, quiet_for_ = 0;
   MotionLosses losses_;
   double given_ = 0, residual_ = 0;

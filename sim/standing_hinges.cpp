@@ -118,13 +118,21 @@ void StandingFrame::keep_turned() {
   if (!hinges_.empty()) take_turns();
 }
 
+/// Of hinges since they were noted last, J.
+double StandingFrame::turned_work() const {
+  if (hinges_.empty()) return 0;
+  const std::vector<Hinge> now = in_use().hinges();
+  double work = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i].flows) work += dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+  return work;
+}
+
 /// The work of what has turned, J, is plastic; what has turned back is stiff.
 double StandingFrame::take_turns() {
   const std::vector<Hinge> now = in_use().hinges();
   const std::vector<Hinge> stiff = turned_back(now);
-  double work = 0;
-  for (std::size_t i = 0; i < now.size(); ++i)
-    if (now[i].flows) work += dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+  const double work = turned_work();
   losses_.plastic += work;
   hinges_ = now;
   if (!stiff.empty()) set_hinges(stiff);

@@ -51,13 +51,11 @@ void StandingFrame::keep_in_range(const std::vector<double>& from) {
   const std::vector<double> to(solver.displacements().begin(), solver.displacements().end());
   double share = unresisted_.empty() ? solver.share_within(from, kBeyond * kRange) : 0;
   if (unresisted_.empty()) share = std::min(share, share_for_hinges(from));
-  std::vector<double> u(from);
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] += share * (to[i] - from[i]);
-  if (share < 1) {
-    solver.set_displacements(u, loads());
-  } else {
-    solver.set_displacements(to, loads());
-  }
+  is_short_ = share < 1;
+  std::vector<double> u(to);
+  for (std::size_t i = 0; is_short_ && i < u.size(); ++i)
+    u[i] = from[i] + share * (to[i] - from[i]);
+  solver.set_displacements(u, loads());
 }
 
 }  // namespace sunder
