@@ -68,7 +68,7 @@ double FrameSolver::share_within(std::span<const double> from, double limit) con
 /// The springs' forces as loads move what they hold as u does, and next to nothing else.
 std::vector<std::uint32_t> FrameSolver::unresisted_members() const {
   constexpr double kDriven = 1e-6;  // of the largest load
-  constexpr double kTurns = 1e-3;   // of the member that turns most
+  constexpr double kTurns = 0.05;   // of the member that turns most: others give way elastically
   std::vector<std::uint32_t> found;
   if (impl_->held.empty()) return found;
   std::vector<double> force(impl_->u.size(), 0), motion(impl_->u.size());

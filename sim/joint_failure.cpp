@@ -123,23 +123,29 @@ void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& w
     const double own = mass * length(shot.velocity - now);
     if (own < length(lost)) lost = (own / length(lost)) * lost;
     shot.given = struck.empty() ? Vec3{} : shot.given + lost;
-    Vec3 back, across;
+    Vec3 back, across, moment;
     for (const auto& [part, pressed] : struck) {
       const double share = borne_share(part, broken_before, weak);
       if (share == 1 && motion_->borne(part) == 1) continue;
       const Vec3 more = motion_->give_back(part, share);
       back = back + more;
-      if (const double squared = dot(pressed, pressed); squared > 0)
-        across = across + (dot(more, pressed) / squared) * pressed;
+      const double squared = dot(pressed, pressed);
+      if (squared == 0) continue;
+      across = across + (dot(more, pressed) / squared) * pressed;
+      moment = moment + cross((scene_.projectiles[i].radius / std::sqrt(squared)) * pressed, more);
     }
     if (back == Vec3{}) continue;
     const double kept = std::min(1.0, length(shot.given) / length(back));
     back = kept * back;
     shot.given = shot.given - back;
-    const Vec3 mean = now + (0.5 / mass) * back;
-    world_.set_velocity(shot.body, now + (1 / mass) * back, world_.angular_velocity(shot.body));
+    // Friction turned it, too: that goes back as well.
+    const double inertia = 0.4 * mass * scene_.projectiles[i].radius * scene_.projectiles[i].radius;
+    const Vec3 mean = now + (0.5 / mass) * back, spin = world_.angular_velocity(shot.body),
+               turn = (kept / inertia) * moment;
+    world_.set_velocity(shot.body, now + (1 / mass) * back, spin + turn);
     result_.energy.contact -= kept * dot(across, mean);
-    result_.energy.friction -= dot(back - kept * across, mean);
+    result_.energy.friction -=
+        dot(back - kept * across, mean) + inertia * dot(turn, spin + 0.5 * turn);
   }
 }
 

@@ -115,7 +115,14 @@ void StandingFrame::keep_turned() {
   std::erase_if(hinges_, [&](const Hinge& hinge) {
     return !std::ranges::binary_search(left, hinge.joint, {}, &Hinge::joint);
   });
-  if (!hinges_.empty()) take_turns();
+  for (std::size_t round = 0; round < hinges_.size(); ++round) {
+    const std::vector<Hinge> stiff = turned_back(in_use().hinges());
+    if (stiff.empty()) break;
+    in_use().set_hinges(stiff);
+    in_time() ? stand_on() : solve_static();
+  }
+  losses_.plastic += turned_work();
+  hinges_ = in_use().hinges();
 }
 
 /// Of hinges since they were noted last, J.
