@@ -202,6 +202,7 @@ class StandingFrame {
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;  ///< by joint
+  std::vector<std::uint32_t> beyond_;      ///< joints whose hinges left their capacity in it
   std::vector<std::uint32_t> unresisted_;  ///< members that nothing held at the last balance
   /// When it rings: the last loads, and of them contacts and motion of the ground.
   FrameLoads laid_, pushed_, shaken_;

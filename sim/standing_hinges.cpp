@@ -35,7 +35,7 @@ void StandingFrame::set_hinges(const std::vector<Hinge>& hinges) {
     solve_static();
   }
   const std::vector<Hinge> turned = in_use().hinges();
-  if (!in_time() && turn_endlessly(turned)) {
+  if (!in_time() && (is_short_ || turn_endlessly(turned))) {
     hold_hinges(hinges);
   } else {
     hinges_ = turned;
@@ -52,9 +52,10 @@ bool StandingFrame::turn_endlessly(const std::vector<Hinge>& hinges) const {
          });
 }
 
-/// At rest there is no state with these hinges: it stays as it was, but they count as turned too
-/// far.
+/// At rest there is no state with these hinges: it stays as it was, but those that went beyond
+/// their capacity, or all, count as turned too far.
 void StandingFrame::hold_hinges(std::vector<Hinge> hinges) {
+  const std::vector<std::uint32_t> beyond = beyond_;
   for (Hinge& hinge : hinges) {
     const Hinge* was = this->hinge(hinge.joint);
     hinge.rotation = was == nullptr ? Vec3{} : was->rotation;
@@ -64,6 +65,7 @@ void StandingFrame::hold_hinges(std::vector<Hinge> hinges) {
   solve_static();
   hinges_ = static_.frame->hinges();
   for (const Hinge& hinge : hinges) {
+    if (!beyond.empty() && !std::ranges::binary_search(beyond, hinge.joint)) continue;
     const auto is = std::ranges::find(hinges_, hinge.joint, &Hinge::joint);
     is->flows = true;
     is->rotation = {0, kEndless, 0};

@@ -26,10 +26,9 @@ double StandingFrame::share_for_hinges(const std::vector<double>& from) {
     return kBeyond * frame_.classes[frame_.joints[hinge.joint].joint_class].rotation_capacity;
   };
   const std::vector<Hinge> to = static_.frame->hinges();
-  if (std::ranges::none_of(to, [&](const Hinge& hinge) {
-        return hinge.flows && length(hinge.rotation) > capacity(hinge);
-      }))
-    return 1;
+  for (const Hinge& hinge : to)
+    if (hinge.flows && length(hinge.rotation) > capacity(hinge)) beyond_.push_back(hinge.joint);
+  if (beyond_.empty()) return 1;
   static_.frame->set_displacements(from, loads());
   const std::vector<Hinge> before = static_.frame->hinges();
   double share = 1;
@@ -47,6 +46,7 @@ double StandingFrame::share_for_hinges(const std::vector<double>& from) {
 
 void StandingFrame::keep_in_range(const std::vector<double>& from) {
   FrameSolver& solver = *static_.frame;
+  beyond_.clear();
   unresisted_ = solver.unresisted_members();
   const std::vector<double> to(solver.displacements().begin(), solver.displacements().end());
   double share = unresisted_.empty() ? solver.share_within(from, kBeyond * kRange) : 0;
