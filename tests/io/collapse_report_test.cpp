@@ -138,7 +138,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
 
 TEST(CollapseReport, EveryBrokenJointIsCountedInItsMode) {
   CollapseResult result;
-  constexpr std::size_t kOften[] = {5, 1, 4, 2, 3, 6, 7};
+  constexpr std::size_t kOften[kBreakModes.size()] = {5, 1, 4, 2, 3, 6, 7, 8};
   for (std::size_t mode = 0; mode < kBreakModes.size(); ++mode)
     result.broken_joints.insert(result.broken_joints.end(), kOften[mode],
                                 {1, 0.5, 2, kBreakModes[mode], "", ""});
