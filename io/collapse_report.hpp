@@ -29,8 +29,8 @@ std::string collapse_report_json(const CollapseReport& report);
 const std::string& joint_name(const Frame& frame, const CollapseResult& result,
                               std::uint32_t joint);
 /// Every mode of JointBreak, in the order of the report's "broken_by".
-inline constexpr std::array<std::string_view, 7> kBreakModes = {
-    "strength", "hit", "buckling", "unbraced", "removed", "unheld", "panel"};
+inline constexpr std::array<std::string_view, 8> kBreakModes = {
+    "strength", "hit", "buckling", "unbraced", "removed", "unheld", "panel", "mechanism"};
 /// Broken joints of each mode.
 std::array<std::uint64_t, kBreakModes.size()> count_by_mode(const CollapseResult& result);
 

@@ -173,6 +173,8 @@ constexpr ReportKey kModeKeys[] = {
     {"removed", "integer", "Its part was taken away by the scenario."},
     {"unheld", "integer", "What it held had lost too many other joints to be in balance."},
     {"panel", "integer", "The slab or wall that it held fell apart, or hit something as it fell."},
+    {"mechanism", "integer",
+     "It held what moved without resistance, or had moved too far to stand."},
 };
 
 constexpr ReportKey kPanelKeys[] = {

@@ -132,6 +132,7 @@ void BuildingBodies::add_piece(std::vector<std::uint32_t> parts, BodyParams body
   body.order = kMovingOrder + serial_++;
   const auto index = static_cast<std::uint32_t>(pieces_.size());
   piece.body = world_.add_body(body, prisms);
+  if (tell_) tell_(piece.body);
   world_.accept_overlaps(piece.body);
   for (const std::uint32_t part : parts) piece_of_[part] = index;
   if (parts_of_body_.size() <= piece.body) parts_of_body_.resize(piece.body + 1);

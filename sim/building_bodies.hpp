@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/collapse.hpp"
@@ -24,6 +26,8 @@ class BuildingBodies {
   BuildingBodies(const CollapseScene& scene, RigidWorld& world,
                  const std::vector<PartSolid>& solids);
 
+  /// Told of every body that is made, before what it overlaps then is noted.
+  void when_released(std::function<void(BodyId)> tell) { tell_ = std::move(tell); }
   bool stands(std::uint32_t part) const { return piece_of_[part] == kStanding; }
   bool is_loose(std::uint32_t part) const { return piece_of_[part] < pieces_.size(); }
   std::uint32_t piece_of(std::uint32_t part) const { return piece_of_[part]; }  ///< of a loose one
@@ -73,6 +77,7 @@ class BuildingBodies {
   const Frame& frame_;
   RigidWorld& world_;
   const std::vector<PartSolid>& solids_;
+  std::function<void(BodyId)> tell_;
   std::vector<std::uint32_t> piece_of_;                    ///< by part
   std::vector<BodyId> collider_of_;                        ///< by part
   std::vector<Pose> shifted_;                              ///< by part: where its collider is

@@ -101,6 +101,7 @@ void CollapseRun::add_panels() {
                          --present_parts_;
                          return track;
                        }});
+  motion_->when_released([this](BodyId body) { panels_->stand_before(body); });
 }
 
 /// A panel falls apart, or out of the frame.
@@ -475,7 +476,7 @@ void CollapseRun::add_outcome(const ImpactResult& panels) {
   r.panels = panels_->count();
   r.panels_meshed = r.recording.walls.size();
   r.panels_broken = r.panels_meshed - panels.walls_untouched;
-  r.panels_not_meshed = r.panels - r.panels_meshed;
+  r.panels_not_meshed = r.panels - panels_->meshed();
   r.panel_solves = panels_->solves();
   r.panel_solves_skipped = panels_->solves_skipped();
   for (std::size_t i = 0; i < panels.projectiles.size(); ++i) {

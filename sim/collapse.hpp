@@ -84,7 +84,7 @@ struct JointBreak {
   double time = 0;         ///< s
   double utilisation = 0;  ///< demand by capacity of what broke it
   /// "strength" (its rule and component beside), "hit", "buckling", "unbraced", "removed",
-  /// "unheld", "panel" (what it held fell apart)
+  /// "unheld", "panel" (what it held fell apart), "mechanism" (it moved too far to stand)
   std::string_view mode;
   std::string rule;  ///< interaction, "ec3", "euler", "paper"; name of the projectile or the panel
   std::string component;  ///< N, Vy, Vz, T, My, Mz, rotation; "" otherwise

@@ -98,6 +98,7 @@ class CollapseRun {
   void break_overloaded();
   void cascade();
   void crack_panels();
+  void add_mechanisms(std::vector<Failure>& failures) const;
   void keep_most_utilised(std::vector<Failure>& failures, std::vector<Weak>& weak) const;
   void give_way(std::size_t broken_before, const std::vector<Weak>& weak);
   std::map<std::uint32_t, Vec3> pressed_by(BodyId ball, Vec3& lost) const;

@@ -164,10 +164,10 @@ Vec3 ElasticMotion::give_back(std::uint32_t part, double share) {
   const Vec3 back = touches_.end(part);
   press();
   if (standing_.in_time()) {
-    // Hinges that flow turn back at once where nothing presses any more.
-    const double before = standing_.bends() ? standing_.energy() : 0;
-    standing_.stand_on();
-    if (standing_.bends()) fracture_ += before - standing_.energy();
+    // Hinges that flow turn on where less presses on the way between the ends.
+    const double before = standing_.bends() ? unspent() : 0;
+    standing_.carry_on();
+    if (standing_.bends()) fracture_ += before - unspent();
   }
   return back;
 }

@@ -3,6 +3,7 @@
 #include "sim/elastic_motion.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunder {
 namespace {
@@ -110,6 +111,11 @@ double ElasticMotion::energy() const {
   return standing_.kinetic() + standing_.strain() + potential() + world_.kinetic_energy();
 }
 
+/// With what went into plastic hinges.
+double ElasticMotion::unspent() const {
+  return energy() + standing_.losses().plastic;
+}
+
 double ElasticMotion::potential() const {
   double moment = 0;
   for (std::uint32_t part = 0; part < offsets_.size(); ++part)
@@ -159,7 +165,7 @@ bool ElasticMotion::settle_breaks() {
   in_pieces.erase(std::ranges::unique(in_pieces).begin(), in_pieces.end());
   for (const std::uint32_t piece : in_pieces) hold_back_forces(piece);
   const bool is_struck = !of_standing.empty();
-  const double before = is_struck ? energy() : world_.kinetic_energy();
+  const double before = is_struck ? unspent() : world_.kinetic_energy();
   if (is_struck) standing_.wake();
   const std::size_t first_new = bodies_.pieces().size();
   std::vector<SupportGraph::Island> islands = loose_from_standing();
@@ -176,13 +182,13 @@ bool ElasticMotion::settle_breaks() {
       const FrameJoint& joint = frame_.joints[j];
       return !bodies_.stands(joint.a) || (joint.b != kNoPart && !bodies_.stands(joint.b));
     });
-    standing_.take_out(of_standing, released);
+    standing_.take_out(of_standing, released, ways.parts);
     keep_places(ways);
     standing_.carry_on();
   }
   part_bodies();
   inner_.start(first_new, in_pieces, broken_, touches_);
-  fracture_ += before - (is_struck ? energy() + lowered : world_.kinetic_energy());
+  fracture_ += before - (is_struck ? unspent() + lowered : world_.kinetic_energy());
   broken_.clear();
   return true;
 }
@@ -223,6 +229,37 @@ std::vector<std::uint32_t> ElasticMotion::unheld_joints() const {
   return joints;
 }
 
+/// What hangs on the ground without members that have turned too far goes on to stand, and with it
+/// the plates on it; plates hold nothing.
+std::vector<std::uint32_t> ElasticMotion::mechanism_joints() const {
+  std::vector<std::uint32_t> joints, queue;
+  const std::vector<std::uint32_t> turned = standing_.overturned();
+  if (turned.empty()) return joints;
+  std::vector<std::uint8_t> stays(frame_.part_count(), 0), turns(frame_.part_count(), 0);
+  for (const std::uint32_t member : turned) turns[member] = 1;
+  const auto reach = [&](std::uint32_t part) {
+    if (turns[part] || !bodies_.stands(part)) return;
+    if (!std::exchange(stays[part], 1) && part < frame_.members.size()) queue.push_back(part);
+  };
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j)
+    if (links_.intact(j) && frame_.joints[j].b == kNoPart) reach(frame_.joints[j].a);
+  while (!queue.empty()) {
+    const std::uint32_t part = queue.back();
+    queue.pop_back();
+    for (const std::uint32_t j : links_.joints_of(part)) {
+      const FrameJoint& joint = frame_.joints[j];
+      if (links_.intact(j) && joint.b != kNoPart) reach(joint.a == part ? joint.b : joint.a);
+    }
+  }
+  for (std::uint32_t j = 0; j < frame_.joints.size(); ++j) {
+    const FrameJoint& joint = frame_.joints[j];
+    if (!links_.intact(j) || !bodies_.stands(joint.a)) continue;
+    const bool carried = joint.b == kNoPart || stays[joint.b];
+    if (carried != static_cast<bool>(stays[joint.a])) joints.push_back(j);
+  }
+  return joints;
+}
+
 // ---- what is taken away and added
 // ----------------------------------------------------------------
 
@@ -259,29 +296,29 @@ BodyId ElasticMotion::give_up_shape(std::uint32_t part) {
 /// The frame springs back where it is lighter.
 void ElasticMotion::set_mass(std::uint32_t part, double mass) {
   standing_.wake();
-  const double before = energy();
+  const double before = unspent();
   bodies_.set_mass(part, mass);
   standing_.set_plate_mass(part, mass);
   standing_.carry_on();
-  fracture_ += before - energy();
+  fracture_ += before - unspent();
 }
 
 /// What their cracked parts had stored is gone.
 void ElasticMotion::change_panels(std::span<const PanelStiffness> changed) {
   standing_.wake();
-  const double before = energy();
+  const double before = unspent();
   standing_.change_panels(changed);
   standing_.carry_on();
-  fracture_ += before - energy();
+  fracture_ += before - unspent();
 }
 
 /// Free pieces grow heavier too.
 void ElasticMotion::add_load(double more) {
   standing_.wake();
-  const double before = energy(), plastic = standing_.losses().plastic;
+  const double before = unspent();
   bodies_.add_live(more);
   standing_.add_live(more);
-  given_ += energy() + standing_.losses().plastic - plastic - before;
+  given_ += unspent() - before;
 }
 
 // ---- what is told

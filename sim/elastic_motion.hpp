@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "fracture/support_graph.hpp"
@@ -36,6 +37,7 @@ class ElasticMotion final : public FrameMotion {
   bool redistributes() const override { return true; }
   bool settle_breaks() override;
   std::vector<std::uint32_t> unheld_joints() const override;
+  std::vector<std::uint32_t> mechanism_joints() const override;
   void add_projectile(BodyId body, double mass) override { projectiles_.push_back({body, mass}); }
   double borne(std::uint32_t part) const override { return touches_[part].borne; }
   Vec3 give_back(std::uint32_t part, double share) override;
@@ -46,6 +48,9 @@ class ElasticMotion final : public FrameMotion {
   void end_divisions(std::span<const MemberDivision> divisions) override;
   void remove_part(std::uint32_t part) override;
   void add_load(double more) override;
+  void when_released(std::function<void(BodyId)> tell) override {
+    bodies_.when_released(std::move(tell));
+  }
   bool stands(std::uint32_t part) const override { return bodies_.stands(part); }
   BodyId give_up_shape(std::uint32_t part) override;
   void take_shape(std::uint32_t part, BodyId body) override { bodies_.take_shape(part, body); }
@@ -82,6 +87,7 @@ class ElasticMotion final : public FrameMotion {
  private:
   // elastic_motion.cpp
   double energy() const;  ///< of frame and bodies, J
+  double unspent() const;
   void link_again();
   void hold_back_forces(std::uint32_t piece);
   void part_bodies();

@@ -179,6 +179,15 @@ void WallRun::raise_colliders(double dt) {
     if (owner(body).kind == Owner::Kind::foreign) near(body);
 }
 
+void WallRun::raise_colliders_around(BodyId body) {
+  constexpr double kMargin = 0.05;  // m
+  const RigidWorld::Bounds b = world_.bounds(body);
+  const Vec3 m{kMargin, kMargin, kMargin}, low = b.low - m, high = b.high + m;
+  for (std::uint32_t w = 0; w < walls_.size(); ++w)
+    if (stands(w) && gap_between({low, high}, walls_[w].low, walls_[w].high) <= 0)
+      raise_colliders_near(w, low, high);
+}
+
 // Colliders of standing chunks in a world box; of all when nothing is to be skipped.
 void WallRun::raise_colliders_near(std::uint32_t w, Vec3 low, Vec3 high) {
   if (!stands(w)) return;

@@ -59,6 +59,9 @@ class FrameMotion {
   virtual bool settle_breaks() = 0;
   /// Joints that have to go too: what they hold has lost too many others to be in balance.
   virtual std::vector<std::uint32_t> unheld_joints() const = 0;
+  /// Joints with what stands of what has become a mechanism, or moved so far that it does not stand
+  /// any more. They let go when nothing is over its strength.
+  virtual std::vector<std::uint32_t> mechanism_joints() const { return {}; }
   /// What can be given back what the frame does not take of its blow.
   virtual void add_projectile(BodyId, double /*mass*/) {}
   /// Share of what struck the part in the last step that it could take up.
@@ -83,6 +86,8 @@ class FrameMotion {
   virtual void add_load(double more) = 0;
 
   // Slabs and walls that break into chunks of someone else's.
+  /// Told of every body that parts become, where it is then.
+  virtual void when_released(std::function<void(BodyId)>) {}
   /// Whether a part hangs on the ground and is not moved by the world.
   virtual bool stands(std::uint32_t part) const = 0;
   /// The collision shape of a part that stands is taken away, with what touched it; the part still

@@ -275,8 +275,11 @@ void FrameSolver::Impl::break_joints(std::span<const std::uint32_t> joints) {
   std::vector<std::uint32_t> touched, touched_plates;
   for (const std::uint32_t j : joints) {
     if (!links.intact(j)) continue;
+    const std::uint32_t node = frame.joints[j].node;
+    const std::vector<FrameLinks::End> ends = ends_at(node);
     links.cut(j);
-    if (const std::uint32_t node = frame.joints[j].node; node != kNoPart) {
+    if (node != kNoPart) {
+      note_parted(node, ends);
       for (const std::uint32_t end : links.ends_at(node)) touched.push_back(end / 2);
     } else {
       touched_plates.push_back(frame.joints[j].a - frame.slab_part(0));
@@ -328,6 +331,11 @@ std::vector<std::uint32_t> FrameSolver::bridging_joints() const {
   }
   std::ranges::sort(joints);
   return joints;
+}
+
+/// force += what it holds of the displacements.
+void FrameSolver::Impl::add_spring(const Restraint& spring, std::span<double> force) const {
+  add_product(spring.block, u, force);
 }
 
 std::vector<Mechanism> FrameSolver::mechanisms() const {
@@ -490,15 +498,19 @@ void FrameSolver::stiffness_times(std::span<const double> u, std::span<double> f
 }
 
 void FrameSolver::mass_times(std::span<const double> a, std::span<double> f) const {
-  if (impl_->masses) {
-    const std::size_t count = 6 * std::size_t{impl_->links.node_count()};
-    std::ranges::fill(f.subspan(count), 0.0);
-    impl_->masses->multiply(a.first(count), f.first(count));
-    impl_->add_mass_of_tips(a, f);
+  impl_->mass_times(a, f);
+}
+
+void FrameSolver::Impl::mass_times(std::span<const double> a, std::span<double> force) const {
+  if (masses) {
+    const std::size_t count = 6 * std::size_t{links.node_count()};
+    std::ranges::fill(force.subspan(count), 0.0);
+    masses->multiply(a.first(count), force.first(count));
+    add_mass_of_tips(a, force);
     return;
   }
-  impl_->sum_members(a, f, [&](std::uint32_t m, const Twelve& motion) {
-    return times(impl_->mass_matrix(m), motion);
+  sum_members(a, force, [&](std::uint32_t m, const Twelve& motion) {
+    return times(mass_matrix(m), motion);
   });
 }
 

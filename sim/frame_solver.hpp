@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -126,6 +127,14 @@ class FrameSolver {
   /// Where what is left moved without resistance; springs hold it. The loads there mean nothing.
   std::vector<Mechanism> mechanisms() const;
 
+  /// Elastic members that turn or twist between their nodes by more than this, rad, or stretch by
+  /// this share; by the displacements now.
+  std::vector<std::uint32_t> turned_members(double limit) const;
+  /// The largest share of the way from other displacements to those now on which none does.
+  double share_within(std::span<const double> from, double limit) const;
+  /// Those that would turn if the springs of mechanisms() did not carry some of the loads.
+  std::vector<std::uint32_t> unresisted_members() const;
+
   /// Displacements, joint loads and reactions under these loads; refined (at most three times)
   /// while the residual falls and is above 1e-11 and what rounding of the displacements makes.
   void solve(const FrameLoads& loads);
@@ -187,7 +196,10 @@ class FrameSolver {
     std::size_t tip = 0, from = 0;
     Vec3 moved, turned;
   };
-  std::vector<BegunTip> begun_tips();  ///< since the last call
+  /// Since the last call; the displacements have them.
+  std::vector<BegunTip> begun_tips();
+  /// Of displacements (bent) or velocities.
+  static void begin_tips(std::span<const BegunTip> begun, std::span<double> motion, bool bent);
   /// Brings free ends into balance with the other displacements under these loads.
   void rest_tips(std::span<double> u, const FrameLoads& loads) const;
   /// The first of a node's six; kHeld: a support.
@@ -199,6 +211,17 @@ class FrameSolver {
   void stiffness_times(std::span<const double> u, std::span<double> f) const;  ///< K u
   void mass_times(std::span<const double> a, std::span<double> f) const;  ///< M a, all loads' mass
   void solve_system(std::span<const double> f, std::span<double> u) const;  ///< factored matrix
+  /// Nodes that moved as one until breaks since this was asked last: the displacements of both are
+  /// what they were; so shall be other motions.
+  using Parted = std::vector<std::array<std::uint32_t, 2>>;
+  Parted take_parted();
+  static void part_motion(const Parted& parted, std::span<double> motion);
+  /// With mass in the matrix. Velocities after breaks: those of these parts that the model carries in
+  /// another way now (`before`: their ways of the velocities until then) keep their momentum and angular
+  /// momentum, as rigid bodies that are joined to what carries them without bouncing back. So
+  /// kinetic energy does not grow.
+  void keep_momentum(std::span<const std::uint32_t> parts, std::span<const MassWay> before,
+                     std::span<double> v) const;
 
  private:
   struct Impl;

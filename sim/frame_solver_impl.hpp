@@ -96,6 +96,10 @@ struct FrameSolver::Impl {
     std::uint32_t member = 0, node = kNone;  ///< the held end's solver node; kFixed
     Matrix6 inverse{}, coupling{}, mass{}, mass_coupling{};
   };
+  /// Velocities of a rigid motion.
+  struct RigidField {
+    Vec3 centre, velocity, spin;
+  };
   /// Springs against a motion that nothing resists.
   struct Restraint {
     std::uint32_t node = kNone;
@@ -129,6 +133,8 @@ struct FrameSolver::Impl {
   void make_masses(const FrameLinks::Edges& edges);
   Role role_of(std::uint32_t m, int& held_end) const;
   Matrix12 mass_matrix(std::uint32_t m) const;
+  Matrix12 mass_matrix(std::uint32_t m, const BeamElement& element,
+                       std::span<const PointMass> heavy) const;
   void renew(std::uint32_t m);  ///< role, element, stiffness from the links
   void renew_in_factor(std::uint32_t m);
   void set_mass(std::uint32_t m, const BlockChange& next);
@@ -186,6 +192,21 @@ struct FrameSolver::Impl {
   double height(const std::vector<double>& live);
   std::vector<std::uint32_t> parts_at(std::span<const std::uint32_t> joints,
                                       std::span<const std::uint32_t> going) const;
+
+  // frame_momentum.cpp: what breaks leave of motion.
+  std::vector<FrameLinks::End> ends_at(std::uint32_t frame_node) const;
+  void note_parted(std::uint32_t frame_node, const std::vector<FrameLinks::End>& were);
+  void add_missing(std::uint32_t m, const Matrix12& mass, const RigidField& field,
+                   std::span<const double> v, std::span<double> missing) const;
+  void add_missing(std::uint32_t part, const RigidField& field, std::span<const double> v,
+                   std::span<double> missing) const;
+  void mass_times(std::span<const double> a, std::span<double> force) const;
+  void add_velocities(std::vector<double>& left, std::span<double> x) const;
+  void keep_momentum(std::span<const std::uint32_t> parts, std::span<const MassWay> until,
+                     std::span<double> v) const;
+
+  // frame_range.cpp: how far members turn.
+  double turn_at(std::uint32_t m, std::span<const double> motion) const;
 
   // frame_panels.cpp: slabs and walls that are elastic.
   void add_panel_edges(FrameLinks::Edges& edges) const;
@@ -251,6 +272,7 @@ struct FrameSolver::Impl {
   Vec3 diaphragm_shear(std::uint32_t joint) const;
   void add_diaphragms(std::span<const double> motion, std::span<double> result) const;
   void recover();
+  void add_spring(const Restraint& spring, std::span<double> force) const;
   double rest_of(std::span<const double> motion);
   void solve_refined();
   void iterate_second_order();
@@ -285,6 +307,8 @@ struct FrameSolver::Impl {
   std::vector<std::uint32_t> piece_of_node;           ///< kNone: on the ground
   std::vector<Piece> pieces;
   std::vector<std::uint32_t> idle;         ///< solver nodes without members, ascending
+  /// Solver nodes that came into use since part_motion(), and what they moved with before.
+  std::vector<std::array<std::uint32_t, 2>> parted;
   std::vector<std::uint32_t> pinned;       ///< solver nodes, ascending
   std::vector<Restraint> rotations, held;  ///< held: where a pivot vanished
   double pin_stiffness = 0, pin_turn = 0;  ///< N/m, N m/rad

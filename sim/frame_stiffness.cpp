@@ -240,11 +240,17 @@ void FrameSolver::Impl::renew(std::uint32_t m) {
 }
 
 Matrix12 FrameSolver::Impl::mass_matrix(std::uint32_t m) const {
-  const Member& member = members[m];
   BeamElement element = unbent(m);
-  element.mass += member.plate_mass;
+  element.mass += members[m].plate_mass;
+  return mass_matrix(m, element, point_masses[m]);
+}
+
+/// Of what a member carries: the element's own mass and these points.
+Matrix12 FrameSolver::Impl::mass_matrix(std::uint32_t m, const BeamElement& element,
+                                        std::span<const PointMass> heavy) const {
+  const Member& member = members[m];
   Matrix12 mass = mass_of(element);
-  for (const PointMass& point : point_masses[m]) {
+  for (const PointMass& point : heavy) {
     const std::array<Twelve, 3> rows = motion_at(element, point.at);
     for (std::size_t i = 0; i < 144; ++i)
       for (const Twelve& row : rows) mass.at[i] += point.mass * row[i / 12] * row[i % 12];

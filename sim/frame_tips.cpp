@@ -158,7 +158,20 @@ void FrameSolver::rest_tips(std::span<double> u, const FrameLoads& loads) const 
 }
 
 std::vector<FrameSolver::BegunTip> FrameSolver::begun_tips() {
+  begin_tips(impl_->begun, impl_->u, true);
   return std::exchange(impl_->begun, {});
+}
+
+void FrameSolver::begin_tips(std::span<const BegunTip> begun, std::span<double> motion, bool bent) {
+  for (const BegunTip& each : begun) {
+    const std::span<double, 6> tip = motion.subspan(each.tip).first<6>();
+    std::ranges::fill(tip, 0.0);
+    if (each.from != kHeld) std::ranges::copy(motion.subspan(each.from, 6), tip.begin());
+    if (!bent) continue;
+    const double more[6] = {each.moved.x,  each.moved.y,  each.moved.z,
+                            each.turned.x, each.turned.y, each.turned.z};
+    for (std::size_t i = 0; i < 6; ++i) tip[i] += more[i];
+  }
 }
 
 std::size_t FrameSolver::freedom_of_tip(std::uint32_t member) const {

@@ -44,6 +44,7 @@ void CollapseRun::break_overloaded() {
   if (!breaks_) return give_way(broken_before, {});
   std::vector<Weak> weak = weak_members();
   if (motion_->redistributes()) keep_most_utilised(overloads, weak);
+  if (overloads.empty() && weak.empty()) add_mechanisms(failures);
   failures.insert(failures.end(), overloads.begin(), overloads.end());
   break_joints(std::move(failures));
   give_way(broken_before, weak);
@@ -62,10 +63,17 @@ void CollapseRun::cascade() {
     keep_most_utilised(failures, weak);
     for (const std::uint32_t j : motion_->unheld_joints())
       failures.push_back({j, joints_[j].utilisation, "unheld", "balance", {}, true});
+    if (failures.empty() && weak.empty()) add_mechanisms(failures);
     break_joints(std::move(failures));
     divided = !weak.empty();
     divide_members(weak);
   }
+}
+
+/// What moves without resistance, or has moved too far to stand, lets go of what stands.
+void CollapseRun::add_mechanisms(std::vector<Failure>& failures) const {
+  for (const std::uint32_t j : motion_->mechanism_joints())
+    failures.push_back({j, joints_[j].utilisation, "mechanism", "balance", {}, true});
 }
 
 /// Panels crack, joints take over what they bore, and so on. While the frame rings displacements
@@ -115,23 +123,29 @@ void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& w
     const double own = mass * length(shot.velocity - now);
     if (own < length(lost)) lost = (own / length(lost)) * lost;
     shot.given = struck.empty() ? Vec3{} : shot.given + lost;
-    Vec3 back, across;
+    Vec3 back, across, moment;
     for (const auto& [part, pressed] : struck) {
       const double share = borne_share(part, broken_before, weak);
       if (share == 1 && motion_->borne(part) == 1) continue;
       const Vec3 more = motion_->give_back(part, share);
       back = back + more;
-      if (const double squared = dot(pressed, pressed); squared > 0)
-        across = across + (dot(more, pressed) / squared) * pressed;
+      const double squared = dot(pressed, pressed);
+      if (squared == 0) continue;
+      across = across + (dot(more, pressed) / squared) * pressed;
+      moment = moment + cross((scene_.projectiles[i].radius / std::sqrt(squared)) * pressed, more);
     }
     if (back == Vec3{}) continue;
     const double kept = std::min(1.0, length(shot.given) / length(back));
     back = kept * back;
     shot.given = shot.given - back;
-    const Vec3 mean = now + (0.5 / mass) * back;
-    world_.set_velocity(shot.body, now + (1 / mass) * back, world_.angular_velocity(shot.body));
+    // Friction turned it, too: that goes back as well.
+    const double inertia = 0.4 * mass * scene_.projectiles[i].radius * scene_.projectiles[i].radius;
+    const Vec3 mean = now + (0.5 / mass) * back, spin = world_.angular_velocity(shot.body),
+               turn = (kept / inertia) * moment;
+    world_.set_velocity(shot.body, now + (1 / mass) * back, spin + turn);
     result_.energy.contact -= kept * dot(across, mean);
-    result_.energy.friction -= dot(back - kept * across, mean);
+    result_.energy.friction -=
+        dot(back - kept * across, mean) + inertia * dot(turn, spin + 0.5 * turn);
   }
 }
 
@@ -151,16 +165,19 @@ std::map<std::uint32_t, Vec3> CollapseRun::pressed_by(BodyId ball, Vec3& lost) c
   return struck;
 }
 
-/// By the utilisation at which its joints, or it itself, broke in this step; 1: none did.
+/// By the utilisation at which its joints, or it itself, broke in this step; 1: none did. In
+/// balance at any time the blow is on all of the frame at once.
 double CollapseRun::borne_share(std::uint32_t part, std::size_t broken_before,
                                 const std::vector<Weak>& weak) const {
+  const bool at_once = scene_.simulation.quasi_static;
   double most = 1;
   for (const Weak& each : weak)
-    if (each.member == part && is_brittle(each)) most = std::max(most, each.place.utilisation);
+    if ((at_once || each.member == part) && is_brittle(each))
+      most = std::max(most, each.place.utilisation);
   for (std::size_t i = broken_before; i < result_.broken_joints.size(); ++i) {
     const JointBreak& broken = result_.broken_joints[i];
     const FrameJoint& joint = frame_.joints[broken.joint];
-    if (joint.a == part || joint.b == part) most = std::max(most, broken.utilisation);
+    if (at_once || joint.a == part || joint.b == part) most = std::max(most, broken.utilisation);
   }
   return 1 / most;
 }

@@ -196,6 +196,11 @@ void Panels::start() {
         {panel.part, panel.nodes, stiffness_of(*shape.network, standing_of(panel).rotation), {}});
   }
   host_.motion.set_panels(std::move(elements));
+  for (std::uint32_t w = 0; w < panels_.size(); ++w) {
+    if (params_.skip && panels_[w].used <= 1) continue;  // what its weight breaks does at once
+    made(w);
+    make_stress(w);
+  }
 }
 
 /// So that a facade does not show one and the same pattern everywhere.
@@ -313,10 +318,6 @@ double Panels::prepare(double dt) {
       if (walls_.is_waiting(w) && is_near(panels_[w], bounds) &&
           host_.motion.stands(panels_[w].part))
         stand_up(w);
-  }
-  if (!params_.skip) {
-    for (std::uint32_t w = 0; w < panels_.size(); ++w)
-      if (walls_.is_waiting(w) && host_.motion.stands(panels_[w].part)) stand_up(w);
   }
   return walls_.prepare(dt);
 }
@@ -481,19 +482,24 @@ bool Panels::crack() {
   return true;
 }
 
-/// Where anything has changed that could crack it.
+/// Whether nothing has changed that could crack it. What is whole is judged by the bound alone, as
+/// what is not meshed yet.
+bool Panels::is_settled(const Panel& panel, const PanelFreedoms& corners) const {
+  const PanelStress& stress = *panel.stress;
+  if (stress.is_whole())
+    return stress.utilisation() + added_use(panel, corners, stress.settled()) <= 1;
+  return !stress.is_stale(corners, impact_.simulation.max_error);
+}
+
 void Panels::settle(std::uint32_t w) {
   Panel& panel = panels_[w];
   const PanelFreedoms corners = corners_of(panel);
-  // What is whole is judged by the bound alone, as what is not meshed yet.
-  PanelStress& stress = *panel.stress;
-  if (stress.is_whole() ? stress.utilisation() + added_use(panel, corners, stress.settled()) <= 1
-                        : !stress.is_stale(corners, impact_.simulation.max_error)) {
+  if ((params_.skip || panel.stands) && is_settled(panel, corners)) {
     ++solves_skipped_;
     return;
   }
   ++solves_;
-  const std::vector<BrokenBond> broken = stress.settle(corners);
+  const std::vector<BrokenBond> broken = panel.stress->settle(corners);
   if (!broken.empty() && !panel.stands) stand_up(w);
   if (!broken.empty() && panel.stress) break_bonds(w, broken);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -47,6 +48,8 @@ class Panels {
   void make_room(std::uint32_t first, std::uint32_t count);
   /// Time 0: from now on they are elastic, without stress but that of their weight.
   void start();
+  /// A body comes in: chunks that stand around it are there.
+  void stand_before(BodyId body) { walls_.raise_colliders_around(body); }
   // A substep: prepare, next_arrival, the world's step, after_step, arrive.
   /// The longest substep in which nothing passes through a panel.
   double prepare(double dt);
@@ -72,6 +75,10 @@ class Panels {
   std::uint64_t solves() const { return solves_; }                  ///< of panels' networks
   std::uint64_t solves_skipped() const { return solves_skipped_; }  ///< panels × steps
   std::uint64_t count() const { return panels_.size(); }
+  std::uint64_t meshed() const {  ///< of which the chunks were made
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(panels_, [](const Panel& panel) { return panel.made.has_value(); }));
+  }
   /// What became of them. Their walls join the recording, whose parts say which of these they are.
   ImpactResult finish(Recording& recording);
 
@@ -126,6 +133,7 @@ class Panels {
   double added_use(const Panel& panel, const PanelFreedoms& corners,
                    const PanelFreedoms& before) const;
   bool may_crack(std::uint32_t w);
+  bool is_settled(const Panel& panel, const PanelFreedoms& corners) const;
   void settle(std::uint32_t w);
   void break_bonds(std::uint32_t w, std::span<const BrokenBond> broken);
   bool has_lost_joint(const Panel& panel) const;

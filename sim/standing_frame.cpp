@@ -197,12 +197,17 @@ void StandingFrame::tell_all(Solver& solver) const {
   solver.joints = broken_.size();
   solver.parts = gone_.size();
   bring_up_to_date(solver);
+  solver.frame->take_parted();
 }
 
 /// With the hinges that are left to it.
 void StandingFrame::solve_static() {
+  std::vector<double> from;
+  is_short_ = false;
   try {
     bring_up_to_date(static_);
+    static_.frame->take_parted();
+    from.assign(static_.frame->displacements().begin(), static_.frame->displacements().end());
     if (has_rung_ && !hinges_.empty()) static_.frame->set_hinges(hinges_);
     static_.frame->solve(loads());
   } catch (const Error&) {
@@ -211,6 +216,7 @@ void StandingFrame::solve_static() {
   }
   residual_ = std::max(residual_, static_.frame->residual());
   is_live_ = true;
+  if (is_settled_ && scene_.simulation.quasi_static && scene_.rules.breaking) keep_in_range(from);
 }
 
 /// What the stiffness knows of axial forces may be from before something broke: from none. Second
@@ -250,9 +256,11 @@ double StandingFrame::solve_pushed() {
   const auto work = [&] {
     return touched ? static_.frame->work_of(pushed_) + static_.frame->work_of(pushes) : 0;
   };
-  const double before = work();
+  const double before = work(), had = energy();
   solve_static();
-  const double given = (work() - before) / 2;
+  double given = (work() - before) / 2;
+  // Short of a balance it is pushed with no more force than it resists.
+  if (is_short_) given = std::min(given, std::max(0.0, energy() + turned_work() - had));
   if (touched) {
     const std::span<const double> found = static_.frame->displacements();
     static_.frame->set_displacements(std::vector<double>(found.begin(), found.end()), loads());
@@ -278,30 +286,22 @@ void StandingFrame::make_dynamic() {
 }
 
 void StandingFrame::take_out(std::span<const std::uint32_t> joints,
-                             std::span<const std::uint32_t> parts) {
+                             std::span<const std::uint32_t> parts,
+                             std::span<const std::uint32_t> changed) {
   broken_.insert(broken_.end(), joints.begin(), joints.end());
   for (const std::uint32_t part : parts) gone_.push_back(known_part(part));
-  bring_up_to_date(in_time() ? dynamic_ : static_);
-  if (in_time()) begin_tips();
-}
-
-/// Ends that let go move on from where they are, as they did.
-void StandingFrame::begin_tips() {
-  for (const FrameSolver::BegunTip& begun : dynamic_.frame->begun_tips()) {
-    const auto tip = static_cast<long>(begun.tip), from = static_cast<long>(begun.from);
-    const bool stood = begun.from == FrameSolver::kHeld;
-    for (std::vector<double>* each : {&u_, &v_}) {
-      std::fill_n(each->begin() + tip, 6, 0.0);
-      if (!stood) std::copy_n(each->begin() + from, 6, each->begin() + tip);
-    }
-    const Vec3 more[2] = {begun.moved, begun.turned};
-    for (std::size_t i = 0; i < 2; ++i) {
-      u_[begun.tip + 3 * i] += more[i].x;
-      u_[begun.tip + 3 * i + 1] += more[i].y;
-      u_[begun.tip + 3 * i + 2] += more[i].z;
-    }
-  }
+  if (!in_time()) return bring_up_to_date(static_);
+  const std::vector<std::uint32_t> at = known_parts(changed);
+  const std::vector<FrameSolver::MassWay> before = dynamic_.frame->ways_of(v_, at);
+  bring_up_to_date(dynamic_);
+  const FrameSolver::Parted parted = dynamic_.frame->take_parted();
+  FrameSolver::part_motion(parted, u_);
+  FrameSolver::part_motion(parted, v_);
+  const std::vector<FrameSolver::BegunTip> tips = dynamic_.frame->begun_tips();
+  FrameSolver::begin_tips(tips, u_, true);
+  FrameSolver::begin_tips(tips, v_, false);
   is_momentum_known_ = false;
+  dynamic_.frame->keep_momentum(at, before, v_);
 }
 
 /// Of the static solver's displacements, whose free ends are rigid arms.
@@ -358,7 +358,7 @@ void StandingFrame::carry_on() {
     solve_static();
     pushed_ = touching();
   }
-  hinges_ = in_use().hinges();
+  keep_turned();
   is_live_ = true;
 }
 

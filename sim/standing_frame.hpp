@@ -49,7 +49,7 @@ class StandingFrame {
   void solve_step();
   void end_step();
   /// The last step can be done again with other contacts, from where it began.
-  bool can_step_again() const { return can_step_again_ && in_time(); }
+  bool can_step_again() const { return can_step_again_; }
   void step_again();
   /// Speed of the place that a contact touches, along its force; in time. What the force does on
   /// the frame is its work on that.
@@ -57,13 +57,16 @@ class StandingFrame {
   void follow_step();  ///< after a step; a hinge that would turn back is stiff, as it was before
   void fall_quiet(double dt);
 
-  // Changes of what there is: joints break, parts leave with all their joints. Then carry_on().
-  void take_out(std::span<const std::uint32_t> joints, std::span<const std::uint32_t> parts);
+  /// Joints break, parts leave with all their joints; `changed`: parts_at() of them. Then carry_on().
+  void take_out(std::span<const std::uint32_t> joints, std::span<const std::uint32_t> parts,
+                std::span<const std::uint32_t> changed);
+  // Other changes of what there is. Then carry_on().
   void set_plate_mass(std::uint32_t part, double mass);  ///< what is left of a slab or wall, kg
   /// Other stiffnesses of some that were set. Then carry_on().
   void change_panels(std::span<const PanelStiffness> changed);
-  void carry_on();  ///< in time displacements are continuous, else there is a new balance
-  void stand_on();  ///< in time: forces follow the displacements and contacts anew
+  /// In time displacements are continuous, else there is a new balance. What hinges turn then is
+  /// plastic work.
+  void carry_on();
   /// The frame's joints have other parts: solvers are made anew, the state is the same.
   void rejoin();
   // Members divide: standing_division.cpp.
@@ -77,6 +80,9 @@ class StandingFrame {
                      std::vector<FrameLoads::OnPart> contacts,
                      std::vector<std::uint32_t> not_standing);
   std::vector<std::uint32_t> loose_parts() const;
+  /// Members that have turned farther than small displacements mean: nothing that stands holds
+  /// them. Ascending.
+  std::vector<std::uint32_t> overturned() const;
   std::vector<std::uint32_t> bridging_joints() const { return in_use().bridging_joints(); }
 
   // Plastic hinges. In time they turn; at rest they are held as they are left.
@@ -158,12 +164,13 @@ class StandingFrame {
   Vec3 gravity() const;
   void bring_up_to_date(Solver& solver) const;
   void tell_all(Solver& solver) const;
-  void begin_tips();
   std::vector<double> with_tips(std::span<const double> nodes) const;
   std::vector<TipState> tips_of(const FrameSolver& solver, const std::vector<double>& u,
                                 const std::vector<double>& v) const;
   void take_tips(const std::vector<TipState>& tips);
   void solve_static();
+  void keep_in_range(const std::vector<double>& from);
+  double share_for_hinges(const std::vector<double>& from);
   void solve_anew();
   void balance();
   FrameSolverParams static_params() const;
@@ -182,6 +189,7 @@ class StandingFrame {
   std::vector<std::uint32_t> known_parts(std::span<const std::uint32_t> parts) const;
   void move_on();
   void find_momentum() const;
+  void stand_on();
   void account_for_damping();
   void note_residual(const std::vector<double>& mass_way, const std::vector<double>& spring_way);
   void take_state(const FrameSolver& old, const std::vector<double>& u,
@@ -190,6 +198,9 @@ class StandingFrame {
   std::vector<Hinge> stiff_hinges() const;
   std::vector<Hinge> turned_back(const std::vector<Hinge>& now) const;
   void follow_hinges();
+  double turned_work() const;
+  double take_turns();
+  void keep_turned();
   bool turn_endlessly(const std::vector<Hinge>& hinges) const;
   void hold_hinges(std::vector<Hinge> hinges);
 
@@ -210,12 +221,15 @@ class StandingFrame {
   mutable std::vector<double> momentum_;  ///< M v_, if it is known
   mutable bool is_momentum_known_ = false;
   std::vector<Hinge> hinges_;  ///< by joint
+  std::vector<std::uint32_t> beyond_;      ///< joints whose hinges left their capacity in it
+  std::vector<std::uint32_t> unresisted_;  ///< members that nothing held at the last balance
   /// When it rings: the last loads, and of them contacts and motion of the ground.
   FrameLoads laid_, pushed_, shaken_;
   Moment before_step_;
   Undivided undivided_;
   bool rings_ = false, has_rung_ = false, is_live_ = false, can_step_again_ = false;
   bool is_settled_ = false, is_first_order_ = false;
+  bool is_short_ = false;  ///< the last balance was out of range: it went a part of the way
   double live_ = 0, now_ = 0, quiet_for_ = 0;
   MotionLosses losses_;
   double given_ = 0, residual_ = 0;

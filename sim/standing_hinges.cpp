@@ -35,7 +35,7 @@ void StandingFrame::set_hinges(const std::vector<Hinge>& hinges) {
     solve_static();
   }
   const std::vector<Hinge> turned = in_use().hinges();
-  if (!in_time() && turn_endlessly(turned)) {
+  if (!in_time() && (is_short_ || turn_endlessly(turned))) {
     hold_hinges(hinges);
   } else {
     hinges_ = turned;
@@ -52,9 +52,10 @@ bool StandingFrame::turn_endlessly(const std::vector<Hinge>& hinges) const {
          });
 }
 
-/// At rest there is no state with these hinges: it stays as it was, but they count as turned too
-/// far.
+/// At rest there is no state with these hinges: it stays as it was, but those that went beyond
+/// their capacity, or all, count as turned too far.
 void StandingFrame::hold_hinges(std::vector<Hinge> hinges) {
+  const std::vector<std::uint32_t> beyond = beyond_;
   for (Hinge& hinge : hinges) {
     const Hinge* was = this->hinge(hinge.joint);
     hinge.rotation = was == nullptr ? Vec3{} : was->rotation;
@@ -64,6 +65,7 @@ void StandingFrame::hold_hinges(std::vector<Hinge> hinges) {
   solve_static();
   hinges_ = static_.frame->hinges();
   for (const Hinge& hinge : hinges) {
+    if (!beyond.empty() && !std::ranges::binary_search(beyond, hinge.joint)) continue;
     const auto is = std::ranges::find(hinges_, hinge.joint, &Hinge::joint);
     is->flows = true;
     is->rotation = {0, kEndless, 0};
@@ -105,16 +107,45 @@ void StandingFrame::follow_step() {
 
 void StandingFrame::follow_hinges() {
   if (hinges_.empty()) return;
+  const double work = take_turns();
+  if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
+}
+
+/// Less has to be borne, or other ends bear it: what would turn back is stiff as it was.
+void StandingFrame::keep_turned() {
+  const std::vector<Hinge> left = in_use().hinges();
+  std::erase_if(hinges_, [&](const Hinge& hinge) {
+    return !std::ranges::binary_search(left, hinge.joint, {}, &Hinge::joint);
+  });
+  for (std::size_t round = 0; round < hinges_.size(); ++round) {
+    const std::vector<Hinge> stiff = turned_back(in_use().hinges());
+    if (stiff.empty()) break;
+    in_use().set_hinges(stiff);
+    in_time() ? stand_on() : solve_static();
+  }
+  losses_.plastic += turned_work();
+  hinges_ = in_use().hinges();
+}
+
+/// Of hinges since they were noted last, J.
+double StandingFrame::turned_work() const {
+  if (hinges_.empty()) return 0;
+  const std::vector<Hinge> now = in_use().hinges();
+  double work = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i].flows) work += dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
+  return work;
+}
+
+/// The work of what has turned, J, is plastic; what has turned back is stiff.
+double StandingFrame::take_turns() {
   const std::vector<Hinge> now = in_use().hinges();
   const std::vector<Hinge> stiff = turned_back(now);
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (!now[i].flows) continue;
-    const double work = dot(now[i].moment, now[i].rotation - hinges_[i].rotation);
-    losses_.plastic += work;
-    if (!in_time()) losses_.damping -= work;  // where what is lost at rest was booked
-  }
+  const double work = turned_work();
+  losses_.plastic += work;
   hinges_ = now;
   if (!stiff.empty()) set_hinges(stiff);
+  return work;
 }
 
 }  // namespace sunder

@@ -28,6 +28,7 @@ void StandingFrame::wake() {
   if (rang || scene_.simulation.quasi_static) return;
   if (!dynamic_.frame) make_dynamic();
   bring_up_to_date(dynamic_);
+  dynamic_.frame->take_parted();  // they move as at rest
   has_rung_ = true;
   dynamic_.frame->begun_tips();  // they have been at rest
   u_ = with_tips(static_.frame->displacements());
@@ -37,8 +38,13 @@ void StandingFrame::wake() {
 
 /// The momentum M v and the elastic forces K u at the beginning, and what the loads do until then.
 void StandingFrame::begin_step() {
-  if (!in_time()) return;
   can_step_again_ = !contacts_.empty();
+  if (!in_time()) {
+    const std::span<const double> u = static_.frame->displacements();
+    if (can_step_again_)
+      before_step_ = {{u.begin(), u.end()}, {}, {}, {}, pushed_, {}, losses_, given_};
+    return;
+  }
   if (!hinges_.empty() || (can_step_again_ && !scene_.projectiles.empty()))
     before_step_ = {u_, v_, f_, laid_, pushed_, shaken_, losses_, given_};
   find_momentum();
@@ -72,15 +78,21 @@ void StandingFrame::end_step() {
 
 /// To where the last step began.
 void StandingFrame::go_back() {
+  pushed_ = before_step_.pushed;
+  losses_ = before_step_.losses;
+  given_ = before_step_.given;
+  if (!in_time()) {
+    FrameLoads then = loads();
+    then.contacts = pushed_.contacts;
+    static_.frame->set_displacements(before_step_.u, then);
+    return;
+  }
   u_ = before_step_.u;
   v_ = before_step_.v;
   is_momentum_known_ = false;
   f_ = before_step_.f;
   laid_ = before_step_.laid;
-  pushed_ = before_step_.pushed;
   shaken_ = before_step_.shaken;
-  losses_ = before_step_.losses;
-  given_ = before_step_.given;
   dynamic_.frame->set_displacements(u_, laid_);
 }
 

@@ -81,6 +81,8 @@ class WallRun {
   BodyId shot_body(std::uint32_t shot) const { return shots_[shot].body; }
   std::uint32_t shot_track(std::uint32_t shot) const { return shots_[shot].track; }
 
+  /// Makes the colliders around a body that comes in.
+  void raise_colliders_around(BodyId body);
   // A substep: prepare, next_arrival, the world's step, after_step, arrive.
   /// Makes the colliders that it needs; the longest substep in which nothing passes through.
   double prepare(double dt);

@@ -107,7 +107,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
     "yielded_joints": [
       {"joint": "beam@post_a", "time": 0.125, "utilisation": 1.25, "rotation": 0.03125}],
     "broken_by": {"strength": 1, "hit": 1, "buckling": 1, "unbraced": 0, "removed": 0,
-                  "unheld": 0, "panel": 0},
+                  "unheld": 0, "panel": 0, "mechanism": 0},
     "broken_at_rest": 1, "members_divided": 3, "buckles": [{"time": 0.625, "what": "at a node"}], "broken_bonds": 47,
     "crack_area": 48.5, "max_utilisation": 4.75,
     "utilisation_at_rest": 0.375, "first_failure_load": 12500, "joint_gap": 0.0005,
@@ -138,7 +138,7 @@ TEST(CollapseReport, EveryNumberStandsUnderItsKey) {
 
 TEST(CollapseReport, EveryBrokenJointIsCountedInItsMode) {
   CollapseResult result;
-  constexpr std::size_t kOften[] = {5, 1, 4, 2, 3, 6, 7};
+  constexpr std::size_t kOften[kBreakModes.size()] = {5, 1, 4, 2, 3, 6, 7, 8};
   for (std::size_t mode = 0; mode < kBreakModes.size(); ++mode)
     result.broken_joints.insert(result.broken_joints.end(), kOften[mode],
                                 {1, 0.5, 2, kBreakModes[mode], "", ""});

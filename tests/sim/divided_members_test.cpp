@@ -364,7 +364,7 @@ CollapseScene hit(std::uint64_t seed) {
 
 TEST(DividedMembers, BlowsLeaveTheBooksClosed) {
   std::uint64_t divided = 0;
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+  for (std::uint64_t seed = 0; seed < 32; ++seed) {
     const CollapseResult r = simulate_collapse(hit(seed));
     divided += r.members_divided;
     const double scale = std::max(r.energy_in, std::fabs(r.energy.potential));

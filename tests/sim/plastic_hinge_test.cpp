@@ -222,7 +222,8 @@ TEST(PlasticHinge, BuildingThatBendsOutlivesThePostThatABrittleOneDoesNot) {
   EXPECT_EQ(std::ranges::count(bends.broken_joints, "removed", &JointBreak::mode),
             std::ssize(bends.broken_joints));
   for (const JointYield& each : bends.yielded_joints) EXPECT_LT(each.rotation, 0.01);
-  EXPECT_GT(simulate_collapse(post_removal(0)).parts_freed, 90u);
+  const CollapseScene brittle = post_removal(0);
+  EXPECT_GT(simulate_collapse(brittle).parts_freed, brittle.frame.part_count() / 2);
 }
 
 TEST(PlasticHinge, EnergyIsAccountedForToRounding) {

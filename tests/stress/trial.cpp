@@ -123,14 +123,14 @@ void judge_asset(Run& run, const Json& report, bool other_threads) {
   if (other_threads && !run.trial.too_long) judge_same(run, report, {"--threads", "1"}, "with one thread");
 }
 
-/// What breaks without skipping. The same bytes, but for panels: they are other bodies then.
+/// Without skipping the same breaks, and the same bytes.
 void judge_skipping(Run& run, const Json& report) {
   Json other;
   if (!run_verb(run, {"--no-skip"}, other)) return;
   for (const char* key : {"broken_joints", "broken_bonds", "chunks_freed"})
     if (other[key].is_array() ? other[key].size() != report[key].size() : other[key] != report[key])
       run.fail(std::string("another number of ") + key + " without skipping");
-  if (std::string_view(run.kind.name) != "panels" && other["hash"] != report["hash"])
+  if (other["hash"] != report["hash"])
     run.fail("another result without skipping");
 }
 
