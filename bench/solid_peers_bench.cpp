@@ -163,13 +163,13 @@ const char* const kNone =
     "which no package brings.";
 const char* const kSome =
     "NVIDIA Blast and Houdini, which no package brings (Blast's own times are quoted in "
-    "[solids.md](solids.md#measured)); Cell Fracture with more sites than took it four seconds "
+    "[solids.md](solids.md#measured)); Cell Fracture with more sites than took it two seconds "
     "(`./dev bench solid_peers 60`: more).";
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const double limit = argc > 1 ? std::strtod(argv[1], nullptr) : 4;
+  const double limit = argc > 1 ? std::strtod(argv[1], nullptr) : 2;
   const std::string blender = blender_version();
   WorkPlot plot{.block = "solid_peers volume",
                 .title = "Voronoi cells of a solid, the same sites",

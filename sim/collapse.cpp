@@ -293,8 +293,12 @@ void CollapseRun::advance(double dt, bool ends_step) {
   const GroundMotion& motion = scene_.scenario.ground_motion;
   const Vec3 gravity{0, -scene_.simulation.gravity, 0};
   if (!motion.times.empty()) world_.set_gravity(gravity - motion.at(now_ + dt / 2));
-  for (Shot& shot : shots_)
-    if (shot.body != kNoBody) shot.velocity = world_.velocity(shot.body);
+  for (std::size_t i = 0; i < shots_.size(); ++i) {
+    Shot& shot = shots_[i];
+    if (shot.body == kNoBody) continue;
+    shot.velocity = world_.velocity(shot.body);
+    if (shot.given == Vec3{}) shot.brought = kinetic_energy(i);
+  }
   const Vec3 before = world_.momentum();
   world_.step(dt);
   now_ += dt;

@@ -52,6 +52,7 @@ class CollapseRun {
     std::uint32_t track = kNoTrack;
     Vec3 velocity;  ///< when the step began
     Vec3 given;     ///< momentum, to what stands, since they touch
+    double brought = 0;  ///< kinetic energy before they touched, J
   };
   /// What breaks in a step: collected first, then done in the order of joints.
   struct Failure {
@@ -100,6 +101,7 @@ class CollapseRun {
   void crack_panels();
   void add_mechanisms(std::vector<Failure>& failures) const;
   void keep_most_utilised(std::vector<Failure>& failures, std::vector<Weak>& weak) const;
+  double kinetic_energy(std::size_t shot) const;
   void give_way(std::size_t broken_before, const std::vector<Weak>& weak);
   std::map<std::uint32_t, Vec3> pressed_by(BodyId ball, Vec3& lost) const;
   double borne_share(std::uint32_t part, std::size_t broken_before,

@@ -33,6 +33,18 @@ double share_of_moments(const JointLoad& load, const JointStrength& strength) {
   return low;
 }
 
+/// About its centre, kg m².
+double inertia_of(const Projectile& ball) {
+  return 0.4 * ball.mass * ball.radius * ball.radius;
+}
+
+/// The largest share of a change whose energy, linear x + square x² at a share x, is at most
+/// `room`.
+double share_within(double linear, double square, double room) {
+  if (linear + square <= room) return 1;
+  return (std::sqrt(linear * linear + 4 * square * room) - linear) / (2 * square);
+}
+
 }  // namespace
 
 void CollapseRun::break_overloaded() {
@@ -108,6 +120,13 @@ void CollapseRun::keep_most_utilised(std::vector<Failure>& failures,
   std::erase_if(weak, [&](const Weak& w) { return w.place.utilisation < kTogether * most; });
 }
 
+/// Of a projectile, J.
+double CollapseRun::kinetic_energy(std::size_t shot) const {
+  const Projectile& ball = scene_.projectiles[shot];
+  const Vec3 v = world_.velocity(shots_[shot].body), w = world_.angular_velocity(shots_[shot].body);
+  return (ball.mass * dot(v, v) + inertia_of(ball) * dot(w, w)) / 2;
+}
+
 /// What a projectile met stood as if fixed. If joints of it, or the part itself, broke under the
 /// blow, or it ran ahead, the projectile keeps what the frame did not take up of its momentum.
 void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& weak) {
@@ -135,13 +154,17 @@ void CollapseRun::give_way(std::size_t broken_before, const std::vector<Weak>& w
       moment = moment + cross((scene_.projectiles[i].radius / std::sqrt(squared)) * pressed, more);
     }
     if (back == Vec3{}) continue;
-    const double kept = std::min(1.0, length(shot.given) / length(back));
+    // Friction turned it, too: that goes back as well. But it gets no more energy than it brought.
+    const double inertia = inertia_of(scene_.projectiles[i]), has = kinetic_energy(i);
+    const Vec3 spin = world_.angular_velocity(shot.body);
+    const double kept =
+        std::min({1.0, length(shot.given) / length(back),
+                  share_within(dot(now, back) + dot(spin, moment),
+                               (dot(back, back) / mass + dot(moment, moment) / inertia) / 2,
+                               std::max(0.0, shot.brought - has))});
     back = kept * back;
     shot.given = shot.given - back;
-    // Friction turned it, too: that goes back as well.
-    const double inertia = 0.4 * mass * scene_.projectiles[i].radius * scene_.projectiles[i].radius;
-    const Vec3 mean = now + (0.5 / mass) * back, spin = world_.angular_velocity(shot.body),
-               turn = (kept / inertia) * moment;
+    const Vec3 mean = now + (0.5 / mass) * back, turn = (kept / inertia) * moment;
     world_.set_velocity(shot.body, now + (1 / mass) * back, spin + turn);
     result_.energy.contact -= kept * dot(across, mean);
     result_.energy.friction -=
