@@ -17,6 +17,7 @@
 #include "bench/peers_bullet.hpp"
 #include "bench/report.hpp"
 #include "sim/collapse.hpp"
+#include "sim/part_pose.hpp"
 #include "sim/rigid_world.hpp"
 #include "sim/step_times.hpp"
 #include "tests/sim/bodies.hpp"
@@ -49,16 +50,17 @@ std::vector<Material> materials() {
            .source = ""}};
 }
 
+const PanelPattern kHundred{VoronoiRandomParams{100}, -1, {}};
+
 CollapseScene building(double duration) {
   CollapseScene scene;
   scene.seed = 3;
   scene.frame = stocked_frame();
   scene.frame.materials = materials();
   RegularBuilding building = regular(4, 5, 6, 0.1);
-  const PanelPattern hundred{VoronoiRandomParams{100}, -1, {}};
   for (StoreyParams& storey : building.storeys) {
     storey.slab_material = "concrete-c30-reinforced";
-    storey.slab_pattern = storey.wall_pattern = hundred;
+    storey.slab_pattern = storey.wall_pattern = kHundred;
   }
   add_regular(scene.frame, building);
   join(scene.frame);
@@ -151,12 +153,20 @@ void print(const std::string& name, const Run& run, double after) {
 }
 
 void measure_bullet() {
-  const Run all = run(0.004, false);
+  const CollapseScene scene = building(0);
+  const std::vector<PartSolid> solids = solids_of(scene.frame);
   std::vector<WallAsset> walls;
   std::size_t chunks = 0;
-  for (const RecordedWall& wall : all.result.recording.walls) {
-    walls.push_back(wall.asset);
-    chunks += wall.asset.chunks.size();
+  for (std::uint32_t part = scene.frame.slab_part(0); part < scene.frame.part_count(); ++part) {
+    Wall wall;
+    wall.region = solids[part].outline;
+    wall.thickness = 2 * solids[part].half_length;
+    wall.pattern = kHundred.pattern;
+    const Pose pose = pose_of(solids[part]);
+    wall.position = pose.position;
+    wall.rotation = pose.rotation;
+    walls.push_back(fracture_wall(wall, 2400, {.seed = scene.seed}));
+    chunks += walls.back().chunks.size();
   }
   print("plain Bullet, every chunk a body, no joints", step_chunks(walls, 1.0 / 240, 20, 10, 30),
         std::to_string(chunks));
